@@ -18,7 +18,7 @@ use hits::{Hits, Meetings, Seats, Segments, Walls};
 use leads::Leads;
 use paths::Cubics;
 pub(super) use paths::{CLOSE, Paths};
-pub(super) use things::Things;
+pub(super) use things::{BOXES, EITHER, SPHERES, Things};
 
 /// Properties of particles that decide how they meet a face. If they are `POINTS`, their radius is nothing.
 pub(super) struct Riders<F, const POINTS: bool> {
@@ -342,13 +342,13 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
 }
 
 impl<F: Lanes> Riders<F, true> {
-    /// Those of who are `present` who lie on a face or a solid, or bounce off them. Whose solid is not `alone` may hit nothing else but the
+    /// Those of who are `present` who lie on a face or a solid, or bounce off them. Whose solids are not `alone` may hit nothing else but the
     /// face.
     #[inline(always)]
-    pub(in crate::collide) fn go<const BOXES: bool>(
+    pub(in crate::collide) fn go<const MANY: usize, const KIND: u8>(
         &self,
         paths: &Paths<F>,
-        things: &Things<F, BOXES>,
+        things: &Things<F, MANY, KIND>,
         [present, alone]: [u32; 2],
         step: Time,
         max_bounces: u32,

@@ -1,10 +1,10 @@
 //! Every particle by itself: rows whose boxes touch nothing are passed by, the others are followed.
 
 mod among;
+mod beside;
 pub(super) mod face;
 mod follow;
 mod packets;
-mod pairs;
 mod seek;
 mod ways;
 

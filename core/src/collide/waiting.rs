@@ -1,6 +1,7 @@
 //! Rows that wait until there are enough of them to go side by side.
 
 use crate::lanes::{Eight, HITS, LANES, Lanes, PARTS, Vectors};
+use core::ops::Range;
 use glam::Vec3;
 
 /// Rows in the order in which they are met, with some places.
@@ -9,13 +10,17 @@ pub(super) struct List<const PLACES: usize> {
     len: usize,
 }
 
+/// Eights that wait until they go past something, one after the other: a few packets, so that the code which that takes is fetched for all of
+/// them at once, but no more rows than a word has bits.
+pub(super) const EIGHTS: usize = 8;
+
 /// Where a row was and how fast when the step began, each with some number behind it.
 pub(super) type Start = [[f32; 4]; 2];
 
 /// Rows that wait until there are so many, eight by eight, with where they were.
 pub(super) struct Queue {
-    rows: [[u32; LANES]; PARTS],
-    starts: [[Start; LANES]; PARTS],
+    rows: [[u32; LANES]; EIGHTS],
+    starts: [[Start; LANES]; EIGHTS],
     len: usize,
 }
 
@@ -28,17 +33,22 @@ pub(super) struct Packet<'q> {
 }
 
 /// The place of what is put in a missing one's, where there are so many: the first of the same eight, which may go without the others; if all
-/// eight are missing, the first of all, with whom they go.
+/// eight are missing, the first of those with whom they go. Whoever went in another packet would be read after that has moved it.
 pub(super) fn in_place_of(i: usize, len: usize) -> usize {
     let first = i / LANES * LANES;
-    if first < len { first } else { 0 }
+    if first < len { first } else { i / (PARTS * LANES) * (PARTS * LANES) }
+}
+
+/// The places behind so many rows in the last packet, however many go together.
+pub(super) fn missing(len: usize) -> Range<usize> {
+    len..len.next_multiple_of(PARTS * LANES).min(EIGHTS * LANES)
 }
 
 /// Rows that have waited, and where they were, with others [in place of](in_place_of) those that are missing.
 #[derive(Clone, Copy)]
 pub(super) struct Waited<'q> {
-    pub(super) rows: &'q [[u32; LANES]; PARTS],
-    pub(super) starts: &'q [[Start; LANES]; PARTS],
+    pub(super) rows: &'q [[u32; LANES]; EIGHTS],
+    pub(super) starts: &'q [[Start; LANES]; EIGHTS],
     pub(super) len: usize,
 }
 
@@ -111,24 +121,24 @@ impl<const PLACES: usize> List<PLACES> {
 impl Queue {
     #[inline(always)]
     pub(super) fn empty() -> Self {
-        Self { rows: [[0; LANES]; PARTS], starts: [[[[0.0; 4]; 2]; LANES]; PARTS], len: 0 }
+        Self { rows: [[0; LANES]; EIGHTS], starts: [[[[0.0; 4]; 2]; LANES]; EIGHTS], len: 0 }
     }
 
     /// Puts a row in that was there, so fast. Says whether all places are taken then, who have to go before another comes.
     #[inline(always)]
     pub(super) fn push(&mut self, row: u32, [x, v]: [Vec3; 2]) -> bool {
-        let place = self.len % (PARTS * LANES);
+        let place = self.len % (EIGHTS * LANES);
         self.rows.as_flattened_mut()[place] = row;
         self.starts.as_flattened_mut()[place] = [[x.x, x.y, x.z, 0.0], [v.x, v.y, v.z, 0.0]];
         self.len = place + 1;
-        self.len == PARTS * LANES
+        self.len == EIGHTS * LANES
     }
 
     /// Those who wait, who do not wait any longer, and how many they are.
     pub(super) fn take(&mut self) -> Option<Waited<'_>> {
         let len = core::mem::take(&mut self.len);
         let (rows, starts) = (self.rows.as_flattened_mut(), self.starts.as_flattened_mut());
-        for i in len..rows.len() {
+        for i in missing(len) {
             (rows[i], starts[i]) = (rows[in_place_of(i, len)], starts[in_place_of(i, len)]);
         }
         (len > 0).then_some(Waited { rows: &self.rows, starts: &self.starts, len })

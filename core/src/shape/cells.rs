@@ -117,11 +117,7 @@ impl Cells {
         range.lines(self.counts, |cells| {
             for &number in self.numbers_in(cells) {
                 if boxes.get(number as usize).is_some_and(|one| meet(one, bounds)) {
-                    few = match few {
-                        Few::Nothing => Few::One(number as usize),
-                        Few::One(other) if other == number as usize => few,
-                        _ => Few::Several,
-                    };
+                    few = few.and(number as usize);
                 }
             }
         });
@@ -247,9 +243,10 @@ pub(super) mod tests {
                 }
                 told += 1;
                 let met = (0..boxes.len()).filter(|&k| k != 7 && meet(&boxes[k], &bounds));
-                let few = match (met.clone().next(), met.clone().count()) {
-                    (None, _) => Few::Nothing,
-                    (Some(number), 1) => Few::One(number),
+                let few = match *met.clone().collect::<Vec<_>>() {
+                    [] => Few::Nothing,
+                    [number] => Few::One(number),
+                    [one, other] => Few::Two([one, other]),
                     _ => Few::Several,
                 };
                 assert_eq!(cells.few(&boxes, &bounds), few, "{i}");

@@ -156,12 +156,6 @@ pub trait Many: Sync {
         None
     }
 
-    /// Those of some of them, known by the numbers that the clearance knows them by, that may share a point with a box.
-    fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
-        let _ = (numbers, bounds);
-        Few::Several
-    }
-
     /// Those of them that may share a point with a box.
     fn few(&self, bounds: &Aabb) -> Few {
         let _ = bounds;
@@ -176,8 +170,23 @@ pub enum Few {
     Nothing,
     /// One, by its number.
     One(usize),
+    /// Two, by their numbers in ascending order.
+    Two([usize; 2]),
     /// One or more.
     Several,
+}
+
+impl Few {
+    /// The same and one more, if it is not among them.
+    pub(crate) fn and(self, number: usize) -> Self {
+        match self {
+            Self::Nothing => Self::One(number),
+            Self::One(one) if one < number => Self::Two([one, number]),
+            Self::One(one) if one > number => Self::Two([number, one]),
+            Self::Two(two) if !two.contains(&number) => Self::Several,
+            _ => self,
+        }
+    }
 }
 
 impl Collider for () {

@@ -44,6 +44,7 @@ pub use aabb::Aabb;
 pub use affine::Affine;
 pub use capsule::Capsule;
 pub use clearance::Clearance;
+pub(crate) use clearance::NEAREST;
 pub use collider::{Collider, Few, Many, Mapped};
 pub use cone::Cone;
 pub use cuboid::Cuboid;

@@ -1,6 +1,6 @@
 //! Many things to run into, behind an index of their boxes.
 
-use super::cells::{Cells, Found, insert, meet};
+use super::cells::{Cells, Found, insert};
 use super::clearance::{Clearance, ClearanceBuf};
 use super::{Aabb, Collider, Contact, Face, Facing, Few, Hit, Hulls, Many, Marks, Ride, Segment, Solid, earlier};
 use crate::math::{largest, max};
@@ -193,14 +193,6 @@ impl<C: Collider> Many for Scenery<C> {
     fn solid(&self, number: usize) -> Option<(Solid, bool)> {
         let solid = (*self.solids.get(number)?)?;
         Some((solid, self.endless.first().is_some_and(|&face| face < number)))
-    }
-
-    fn few_of(&self, numbers: &[u32], bounds: &Aabb) -> Few {
-        numbers.iter().fold(Few::Nothing, |few, &number| match few {
-            _ if self.boxes.0.get(number as usize).is_some_and(|one| !meet(one, bounds)) => few,
-            Few::Nothing => Few::One(number as usize),
-            _ => Few::Several,
-        })
     }
 
     fn few(&self, bounds: &Aabb) -> Few {

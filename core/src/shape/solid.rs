@@ -19,6 +19,9 @@ pub enum Solid {
 }
 
 impl Solid {
+    /// A point that nothing meets.
+    pub(crate) const NONE: Self = Self::Sphere { center: Vec3::ZERO, radius: 0.0 };
+
     /// The box around it.
     pub(crate) fn bounds(&self) -> Aabb {
         match *self {

@@ -36,6 +36,7 @@ impl Scene<'_> {
     /// Rows of a tile.
     pub(super) fn tile_rows(&self) -> usize {
         match (self.leap().is_some(), self.is_swept()) {
+            (true, true) if self.colliders.many().is_some() => 2 * LEAPT,
             (true, true) => LEAPT,
             (true, false) => ONE_PASS,
             (false, _) => TILE,

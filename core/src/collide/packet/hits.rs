@@ -5,7 +5,6 @@ use crate::collide::path::MAX_CHORDS;
 use crate::collide::sweep::MAX_LOOKS;
 use crate::lanes::{Lanes, Vectors, max, min, negated, not};
 use crate::shape::Face;
-use glam::Vec3;
 
 /// Where some of them meet the face.
 pub(super) struct Hits<F> {
@@ -104,6 +103,20 @@ fn crossed<F: Lanes>(before: F, after: F) -> [F; 2] {
     [falls, before.simd_lt(zero) & after.simd_ge(zero)]
 }
 
+impl<F: Lanes> Seats<F> {
+    /// Has others besides, where there may have been any before: only one at a place is a seat.
+    #[inline(always)]
+    pub(super) fn join(&mut self, others: Self, are_any: &mut F) {
+        let are = others.are & not(*are_any);
+        self.normal = Vectors::select(are, others.normal, self.normal);
+        self.distance = are.select(others.distance, self.distance);
+        self.slack = are.select(others.slack, self.slack);
+        self.are = (self.are & not(others.are)) | are;
+        self.unclear = self.unclear | others.unclear;
+        *are_any = *are_any | others.are;
+    }
+}
+
 impl<F: Lanes> Hits<F> {
     /// Takes some from others.
     #[inline(always)]
@@ -118,9 +131,8 @@ impl<F: Lanes> Hits<F> {
 
 impl<F: Lanes> Meetings<F> {
     fn none(place: Vectors<F>, unclear: F) -> Self {
-        let (like, zero) = (unclear, unclear.all(0.0));
-        let normal = Vectors::splat(like, Vec3::ZERO);
-        let hits = Hits { are: zero, time: zero, normal, slack: zero, beside_face: zero };
+        let zero = unclear.all(0.0);
+        let hits = Hits { are: zero, time: zero, normal: Vectors([zero; 3]), slack: zero, beside_face: zero };
         Self { hits, unclear, place, begun: zero, chord_from: place }
     }
 

@@ -1,16 +1,28 @@
-//! A flat face and one solid before each of some points.
+//! A flat face and one solid before each of some points, or two.
 //!
-//! Every number is made as the solid makes it by itself, in the same order, and so has the same bits.
+//! Every number is made as the solids make it by themselves, in the same order, and so has the same bits.
 
 use super::hits::{Hits, Seats, Segments, Walls};
 use super::walls::slack;
+use crate::collide::waiting::EIGHTS;
 use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, min, negated, not};
 use crate::shape::{Aabb, Face, Solid};
 
-/// Solids, one before each point: all of them spheres, or all of them `BOXES`.
-pub(in crate::collide) struct Things<F, const BOXES: bool> {
-    /// The face that all are on, and those whose solid comes after it in their order.
+/// The kinds that solids before some points are of: all spheres, all boxes, or either.
+pub(in crate::collide) const SPHERES: u8 = 0;
+pub(in crate::collide) const BOXES: u8 = 1;
+pub(in crate::collide) const EITHER: u8 = 2;
+
+/// So many solids of a kind before each point, in their order, and the face that all are on.
+pub(in crate::collide) struct Things<F, const MANY: usize, const KIND: u8> {
     face: Option<Face>,
+    solids: [Solids<F, KIND>; MANY],
+}
+
+/// Solids of a kind, one before each point.
+#[derive(Clone, Copy)]
+struct Solids<F, const KIND: u8> {
+    /// Those that come after the face in their order.
     after: F,
     /// The boxes around them.
     min: Vectors<F>,
@@ -19,17 +31,55 @@ pub(in crate::collide) struct Things<F, const BOXES: bool> {
     radius: F,
     /// How far they reach from the origin.
     size: F,
+    /// Those that are boxes.
+    boxes: F,
 }
 
-impl<F: Lanes, const BOXES: bool> Things<F, BOXES> {
+impl<F: Lanes, const MANY: usize, const KIND: u8> Things<F, MANY, KIND> {
+    /// The solids before a packet that begins with one of the eights, and a bit for each that comes after the face.
     #[inline(always)]
-    pub(in crate::collide) fn of(like: F, solids: [&[Solid; LANES]; PARTS], after: u32, face: Option<Face>) -> Self {
-        let [x, y, z, radius, u, v, w, size, center_x, center_y, center_z] = like.of_parts(
+    pub(in crate::collide) fn of(
+        like: F,
+        solids: &[[[Solid; LANES]; EIGHTS]; MANY],
+        after: &[u64; MANY],
+        nth: usize,
+        face: Option<Face>,
+    ) -> Self {
+        let first =
+            Solids::of(like, [&solids[0][nth], &solids[0][nth + F::PARTS - 1]], (after[0] >> (LANES * nth)) as u32);
+        let mut all = [first; MANY];
+        for (all, (solids, after)) in all.iter_mut().zip(solids.iter().zip(after)).skip(1) {
+            *all = Solids::of(like, [&solids[nth], &solids[nth + F::PARTS - 1]], (after >> (LANES * nth)) as u32);
+        }
+        Self { face, solids: all }
+    }
+}
+
+impl<F: Lanes, const KIND: u8> Solids<F, KIND> {
+    #[inline(always)]
+    fn of(like: F, solids: [&[Solid; LANES]; PARTS], after: u32) -> Self {
+        let [x, y, z, radius, u, v, w, size, center_x, center_y, center_z, boxes] = like.of_parts(
             #[inline(always)]
             |like, nth| columns(like, solids[nth]),
         );
         let (center, after) = (Vectors([center_x, center_y, center_z]), mask_of(like, after));
-        Self { face, after, min: Vectors([x, y, z]), max: Vectors([u, v, w]), center, radius, size }
+        let boxes = boxes.simd_gt(like.all(0.0));
+        Self { after, min: Vectors([x, y, z]), max: Vectors([u, v, w]), center, radius, size, boxes }
+    }
+
+    /// What spheres and boxes answer, each where it is one.
+    #[inline(always)]
+    fn either<T>(
+        &self,
+        spheres: impl FnOnce() -> T,
+        boxes: impl FnOnce() -> T,
+        select: impl FnOnce(F, T, T) -> T,
+    ) -> T {
+        match KIND {
+            SPHERES => spheres(),
+            BOXES => boxes(),
+            _ => select(self.boxes, boxes(), spheres()),
+        }
     }
 
     /// Those that boxes may touch, as `Aabb::overlaps` says.
@@ -49,15 +99,22 @@ impl<F: Lanes, const BOXES: bool> Things<F, BOXES> {
     /// Those that places lie strictly inside of.
     #[inline(always)]
     fn contain(&self, place: Vectors<F>) -> F {
-        if BOXES {
-            let [x, y, z] = axes(
-                #[inline(always)]
-                |axis| place.0[axis].simd_gt(self.min.0[axis]) & place.0[axis].simd_lt(self.max.0[axis]),
-            );
-            return x & y & z;
-        }
-        let offset = place - self.center;
-        offset.dot(offset).simd_lt(self.radius * self.radius)
+        self.either(
+            #[inline(always)]
+            || {
+                let offset = place - self.center;
+                offset.dot(offset).simd_lt(self.radius * self.radius)
+            },
+            #[inline(always)]
+            || {
+                let [x, y, z] = axes(
+                    #[inline(always)]
+                    |axis| place.0[axis].simd_gt(self.min.0[axis]) & place.0[axis].simd_lt(self.max.0[axis]),
+                );
+                x & y & z
+            },
+            F::select,
+        )
     }
 
     /// Where points that go along straight pieces first hit the solids, from outside or from inside, as `convex::first_hit` has it.
@@ -89,7 +146,13 @@ impl<F: Lanes, const BOXES: bool> Things<F, BOXES> {
     /// inward there.
     #[inline(always)]
     fn span(&self, from: Vectors<F>, step: Vectors<F>, leaves: F) -> Span<F> {
-        if BOXES { self.box_span(from, step, leaves) } else { self.sphere_span(from, step, leaves) }
+        self.either(
+            #[inline(always)]
+            || self.sphere_span(from, step, leaves),
+            #[inline(always)]
+            || self.box_span(from, step, leaves),
+            Span::select,
+        )
     }
 
     #[inline(always)]
@@ -149,38 +212,62 @@ impl<F: Lanes, const BOXES: bool> Things<F, BOXES> {
     #[inline(always)]
     fn gaps(&self, place: Vectors<F>) -> (Vectors<F>, F) {
         let zero = self.size.all(0.0);
-        if BOXES {
-            let gap = axes(
-                #[inline(always)]
-                |axis| max(place.0[axis] - self.max.0[axis], zero) - max(self.min.0[axis] - place.0[axis], zero),
-            );
-            let [x, y, z] = axes(
-                #[inline(always)]
-                |axis| (place.0[axis] - self.min.0[axis]).least(self.max.0[axis] - place.0[axis]),
-            );
-            return (Vectors(gap), x.least(y).least(z));
-        }
-        let offset = place - self.center;
-        let length = offset.length();
-        (offset.unit() * max(length - self.radius, zero), self.radius - length)
+        self.either(
+            #[inline(always)]
+            || {
+                let offset = place - self.center;
+                let length = offset.length();
+                (offset.unit() * max(length - self.radius, zero), self.radius - length)
+            },
+            #[inline(always)]
+            || {
+                let gap = axes(
+                    #[inline(always)]
+                    |axis| max(place.0[axis] - self.max.0[axis], zero) - max(self.min.0[axis] - place.0[axis], zero),
+                );
+                let [x, y, z] = axes(
+                    #[inline(always)]
+                    |axis| (place.0[axis] - self.min.0[axis]).least(self.max.0[axis] - place.0[axis]),
+                );
+                (Vectors(gap), x.least(y).least(z))
+            },
+            #[inline(always)]
+            |mask, (gap, wall), (other_gap, other)| (Vectors::select(mask, gap, other_gap), mask.select(wall, other)),
+        )
+    }
+
+    /// The seats on them, of which it cannot be told for points inside that are near a wall: they may be near several.
+    #[inline(always)]
+    fn seats(&self, place: Vectors<F>, reach: F) -> Seats<F> {
+        let (gap, wall) = self.gaps(place);
+        let normal = gap.unit();
+        let distance = gap.dot(normal);
+        let reaches = Vectors([reach, reach, reach]);
+        let is_within = self.contain(place);
+        let is_near = self.may_touch(place - reaches, place + reaches)
+            & distance.simd_le(reach)
+            & not(normal.is_zero() | is_within);
+        let unclear = is_within & not(wall.simd_gt(reach.all(1.001) * reach));
+        let slack = slack(place, distance, self.size);
+        Seats { are: is_near & not(unclear), normal, distance, slack, unclear }
     }
 }
 
 /// The lower corners of eight solids' boxes and the radii of balls in their place, the upper corners and how far each reaches from the
-/// origin, and the centers.
+/// origin, and the centers and whether they are boxes.
 #[inline(always)]
-fn columns<F: Eight>(like: F, solids: &[Solid; LANES]) -> [F; 11] {
+fn columns<F: Eight>(like: F, solids: &[Solid; LANES]) -> [F; 12] {
     let (mut min, mut max, mut center) = ([[0.0; 4]; LANES], [[0.0; 4]; LANES], [[0.0; 4]; LANES]);
     for (i, solid) in solids.iter().enumerate() {
         let Aabb { min: low, max: high } = solid.bounds();
         let (middle, radius) = solid.ball();
         min[i] = [low.x, low.y, low.z, radius];
         max[i] = [high.x, high.y, high.z, solid.reach()];
-        center[i] = [middle.x, middle.y, middle.z, 0.0];
+        center[i] = [middle.x, middle.y, middle.z, f32::from(matches!(solid, Solid::Box(_)))];
     }
     let ([x, y, z, radius], [u, v, w, size]) = (like.quads_of(min), like.quads_of(max));
-    let [a, b, c] = like.columns_of(center);
-    [x, y, z, radius, u, v, w, size, a, b, c]
+    let [a, b, c, d] = like.quads_of(center);
+    [x, y, z, radius, u, v, w, size, a, b, c, d]
 }
 
 /// The parts of lines inside solids.
@@ -189,6 +276,15 @@ struct Span<F> {
     enter: F,
     leave: F,
     normal: Vectors<F>,
+}
+
+impl<F: Lanes> Span<F> {
+    #[inline(always)]
+    fn select(mask: F, a: Self, b: Self) -> Self {
+        let [are, enter, leave] =
+            [mask.select(a.are, b.are), mask.select(a.enter, b.enter), mask.select(a.leave, b.leave)];
+        Self { are, enter, leave, normal: Vectors::select(mask, a.normal, b.normal) }
+    }
 }
 
 /// A number for each axis.
@@ -213,40 +309,35 @@ fn high<F: Lanes>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
     ))
 }
 
-impl<F: Lanes, const BOXES: bool> Walls<F> for Things<F, BOXES> {
+impl<F: Lanes, const MANY: usize, const KIND: u8> Walls<F> for Things<F, MANY, KIND> {
     #[inline(always)]
     fn first_hits<const POINTS: bool>(&self, piece: &Segments<F>, radius: F) -> Hits<F> {
-        let things = self.hits(piece);
+        let (mut things, mut after) = (self.solids[0].hits(piece), self.solids[0].after);
+        for solids in &self.solids[1..] {
+            let others = solids.hits(piece);
+            let is_earlier = others.are & (others.time.simd_lt(things.time) | not(things.are));
+            after = is_earlier.select(solids.after, after);
+            things.take(is_earlier, others);
+        }
         let Some(face) = &self.face else { return things };
         let mut hits = piece.first_hits::<POINTS>(face, radius);
         // The first in their order, unless the other is earlier.
-        let is_earlier = self.after.select(things.time.simd_lt(hits.time), not(hits.time.simd_lt(things.time)));
+        let is_earlier = after.select(things.time.simd_lt(hits.time), not(hits.time.simd_lt(things.time)));
         hits.take(things.are & (is_earlier | not(hits.are)), things);
         hits
     }
 
-    /// Points inside solids and near a wall are unclear: they may be near several.
     #[inline(always)]
     fn seats(&self, place: Vectors<F>, reach: F) -> Seats<F> {
-        let (gap, wall) = self.gaps(place);
-        let normal = gap.unit();
-        let distance = gap.dot(normal);
-        let reaches = Vectors([reach, reach, reach]);
-        let is_within = self.contain(place);
-        let is_near = self.may_touch(place - reaches, place + reaches)
-            & distance.simd_le(reach)
-            & not(normal.is_zero() | is_within);
-        let is_unclear = is_within & not(wall.simd_gt(reach.all(1.001) * reach));
-        let slack = slack(place, distance, self.size);
-        let things = Seats { are: is_near & not(is_unclear), normal, distance, slack, unclear: is_unclear };
-        let Some(face) = &self.face else { return things };
-        let seats = face.seats(place, reach);
-        Seats {
-            are: (seats.are ^ things.are) & not(is_unclear),
-            normal: Vectors::select(things.are, things.normal, seats.normal),
-            distance: things.are.select(things.distance, seats.distance),
-            slack: things.are.select(things.slack, seats.slack),
-            unclear: is_unclear,
+        let mut seats = self.solids[0].seats(place, reach);
+        let mut are_any = seats.are;
+        for solids in &self.solids[1..] {
+            seats.join(solids.seats(place, reach), &mut are_any);
         }
+        if let Some(face) = &self.face {
+            seats.join(face.seats(place, reach), &mut are_any);
+        }
+        seats.are = seats.are & not(seats.unclear);
+        seats
     }
 }

@@ -1,10 +1,12 @@
 //! Rows among many things: who may be near any of them is told many at a time, and only those look for what they are near.
 
-use super::pairs::{Pairs, PastThings};
-use super::seek::{Asking, Seek, Sought};
+use super::beside::{Beside, PastThings};
+use super::packets::{ALL, Unsettled};
+use super::seek::{Asking, Seek, Sought, Tell, Told};
 use super::ways::Room;
 use super::{Bits, TileSweep, Waiting, words};
 use crate::collide::near::{BLOCK, Near};
+use crate::collide::packet::{BOXES, EITHER, SPHERES};
 use crate::collide::sweep::surroundings;
 use crate::collide::tile::Tile;
 use crate::collide::waiting::ones;
@@ -23,17 +25,20 @@ struct Among<'m> {
     size: f32,
     /// True if points may go past solids in packets.
     has_packets: bool,
-    /// Rows that wait to go past spheres, and past boxes.
-    pairs: [Pairs; 2],
+    /// Rows that wait to go past a sphere, past a box, and past two things.
+    spheres: Beside<1>,
+    boxes: Beside<1>,
+    twos: Beside<2>,
 }
 
 impl Among<'_> {
-    /// Those of the things that may be near the ways of a row, and so much farther away on all sides.
-    #[inline]
-    fn few(&self, sought: &Sought, i: usize, beyond: f32) -> Few {
-        let (bounds, [.., widest]) = (sought.around(i, beyond), sought.middle[i]);
-        let nearest = self.clearance.and_then(|clearance| clearance.nearest(sought.cells[i], widest + beyond));
-        nearest.map_or_else(|| self.many.few(&bounds), |numbers| self.many.few_of(numbers, &bounds))
+    /// The solids that rows go past in packets, of these numbers and in their order; none, if one is something else.
+    fn solids<const MANY: usize>(&self, numbers: [usize; MANY]) -> Option<[(Solid, bool); MANY]> {
+        let mut solids = [(Solid::NONE, false); MANY];
+        for (solid, number) in solids.iter_mut().zip(numbers) {
+            *solid = self.many.solid(number)?;
+        }
+        Some(solids)
     }
 }
 
@@ -53,7 +58,9 @@ impl TileSweep<'_, '_> {
             things: *things,
             size,
             has_packets,
-            pairs: [Pairs::EMPTY; 2],
+            spheres: Beside::NOBODY,
+            boxes: Beside::NOBODY,
+            twos: Beside::NOBODY,
         };
         let mut asking = Asking::nobody();
         for first in (0..old).step_by(BLOCK) {
@@ -69,8 +76,9 @@ impl TileSweep<'_, '_> {
         if let Some(waiting) = &mut waiting {
             self.go_on(waiting);
         }
-        self.past_things::<false>(&mut among);
-        self.past_things::<true>(&mut among);
+        self.past_spheres(&mut among);
+        self.past_boxes(&mut among);
+        self.past_two(&mut among);
         let known = face.map_or(Facing::Nothing, Facing::Face);
         for row in old..len {
             if !self.go_between(row, &among) {
@@ -134,14 +142,22 @@ impl TileSweep<'_, '_> {
     /// The same of those who have been asked about so far.
     #[inline(never)]
     fn seek_for(&mut self, asking: &mut Asking, first: usize, among: &mut Among<'_>, room: Room, gone: &mut Bits) {
-        let Asking { list, sought } = asking;
-        let (eights, len) = list.take_eights();
-        run_broad(Seek { of: self, eights, len, face: among.face, clearance: among.clearance, room, sought });
-        for (nth, (rows, sought)) in eights.iter().zip(sought).enumerate() {
-            let are_there = if len < LANES * (nth + 1) { (1 << (len % LANES)) - 1 } else { u32::MAX };
-            for i in ones(sought.near & are_there) {
-                let row = rows[i % LANES] as usize;
-                if self.go_near(row, sought, i % LANES, among) {
+        let Asking { list, sought, near, told } = asking;
+        let ((eights, len), clearance) = (list.take_eights(), among.clearance);
+        run_broad(Seek { of: self, eights, len, face: among.face, clearance, room, sought });
+        for (nth, some) in sought.chunks(LANES).enumerate() {
+            let word = some.iter().rev().fold(0, |word, sought| word << LANES | u64::from(sought.near));
+            let are_there = u64::MAX.checked_shl(len.saturating_sub(64 * nth) as u32).map_or(u64::MAX, |none| !none);
+            near.add((64 * nth) as u32, word & are_there);
+        }
+        let (places, len) = near.take_eights();
+        run_broad(Tell { places, len, sought, clearance, told });
+        for (nth, (places, told)) in places.iter().zip(&*told).enumerate() {
+            let are_there = if len < LANES * (nth + 1) { (1 << (len % LANES)) - 1 } else { ALL };
+            for i in ones(told.may_meet() & are_there) {
+                let place = places[i] as usize;
+                let (row, sought) = (eights.as_flattened()[place] as usize, &sought[place / LANES]);
+                if self.go_near(row, (told, i), (sought, place % LANES), among) {
                     gone[(row - first) / LANES] |= 1 << ((row - first) % LANES);
                 }
             }
@@ -150,36 +166,76 @@ impl TileSweep<'_, '_> {
 
     /// Follows a row that may be near things, or has it wait for others; false, if it is not near any.
     #[inline]
-    fn go_near(&mut self, row: usize, sought: &Sought, i: usize, among: &mut Among<'_>) -> bool {
-        let [x, y, z, widest] = sought.middle[i];
-        if !(x + y + z + widest).is_finite() {
-            return self.go_between(row, among);
+    fn go_near(
+        &mut self,
+        row: usize,
+        (told, nth): (&Told, usize),
+        (sought, lane): (&Sought, usize),
+        among: &mut Among<'_>,
+    ) -> bool {
+        let around = |beyond: f32| {
+            let bounds = sought.around(lane, beyond);
+            let is_finite = bounds.min.is_finite() && bounds.max.is_finite();
+            if is_finite { among.many.few(&bounds) } else { Few::Several }
+        };
+        let few = told.few(nth).unwrap_or_else(|| around(0.0));
+        if few == Few::Nothing {
+            return false;
         }
-        let number = match among.few(sought, i, 0.0) {
-            Few::Nothing => return false,
-            Few::One(number) => number,
-            Few::Several => return self.go_between(row, among),
-        };
+        let [.., beyond] = sought.half[lane];
         let may_wait = among.has_packets && self.tile.attributes.lives.radius[row] == 0.0;
-        let Some(solid) = among.many.solid(number).filter(|_| may_wait) else {
-            return self.go_between(row, among);
-        };
-        let [.., beyond] = sought.half[i];
-        let is_alone = matches!(among.few(sought, i, beyond), Few::One(_));
-        let is_box = matches!(solid.0, Solid::Box(_));
-        if among.pairs[usize::from(is_box)].push(row as u32, solid, is_alone) {
-            if is_box { self.past_things::<true>(among) } else { self.past_things::<false>(among) }
+        let is_alone = may_wait && told.is_alone(nth).unwrap_or_else(|| around(beyond) == few);
+        let number = row as u32;
+        match few {
+            Few::One(one) if may_wait => {
+                let Some([solid]) = among.solids([one]) else { return self.go_between(row, among) };
+                if matches!(solid.0, Solid::Box(_)) {
+                    if among.boxes.push(number, [solid], is_alone) {
+                        self.past_boxes(among);
+                    }
+                } else if among.spheres.push(number, [solid], is_alone) {
+                    self.past_spheres(among);
+                }
+            }
+            Few::Two(two) if may_wait => {
+                let Some(solids) = among.solids(two) else { return self.go_between(row, among) };
+                if among.twos.push(number, solids, is_alone) {
+                    self.past_two(among);
+                }
+            }
+            _ => return self.go_between(row, among),
         }
         true
     }
 
-    /// Lets those go who wait to go past solids.
+    /// Lets those go who wait to go past a sphere.
     #[inline(never)]
-    fn past_things<const BOXES: bool>(&mut self, among: &mut Among<'_>) {
-        let Some((len, pairs)) = among.pairs[usize::from(BOXES)].take() else { return };
-        let unsettled = run_broad(PastThings::<BOXES> { of: self, len, pairs: &pairs, face: among.face });
+    fn past_spheres(&mut self, among: &mut Among<'_>) {
+        let Some((len, waiting)) = among.spheres.take() else { return };
+        let unsettled = run_broad(PastThings::<1, SPHERES> { of: self, len, waiting: &waiting, face: among.face });
+        self.go_alone(&waiting, &unsettled, among);
+    }
+
+    /// The same past a box.
+    #[inline(never)]
+    fn past_boxes(&mut self, among: &mut Among<'_>) {
+        let Some((len, waiting)) = among.boxes.take() else { return };
+        let unsettled = run_broad(PastThings::<1, BOXES> { of: self, len, waiting: &waiting, face: among.face });
+        self.go_alone(&waiting, &unsettled, among);
+    }
+
+    /// The same past two things.
+    #[inline(never)]
+    fn past_two(&mut self, among: &mut Among<'_>) {
+        let Some((len, waiting)) = among.twos.take() else { return };
+        let unsettled = run_broad(PastThings::<2, EITHER> { of: self, len, waiting: &waiting, face: among.face });
+        self.go_alone(&waiting, &unsettled, among);
+    }
+
+    /// Follows those by themselves who have waited and have not come to the end of the step with others.
+    fn go_alone<const MANY: usize>(&mut self, waiting: &Beside<MANY>, unsettled: &Unsettled, among: &Among<'_>) {
         for i in ones(unsettled.left | unsettled.others) {
-            let row = pairs.rows.as_flattened()[i] as usize;
+            let row = waiting.rows.as_flattened()[i] as usize;
             if !self.go_between(row, among) {
                 self.follow(row);
             }
@@ -194,8 +250,9 @@ impl TileSweep<'_, '_> {
             self.follow(row);
             return true;
         };
-        let Among { many, things, .. } = *among;
-        things.overlaps(&bounds) && many.near(&bounds, &mut |walls| self.follow_past(row, walls, Some(Facing::Several)))
+        let Among { many, clearance, things, .. } = *among;
+        let is_near = things.overlaps(&bounds) && !clearance.is_some_and(|clearance| clearance.is_free(&bounds));
+        is_near && many.near(&bounds, &mut |walls| self.follow_past(row, walls, Some(Facing::Several)))
     }
 }
 

@@ -44,8 +44,8 @@ pub(super) struct Terms {
 /// The rows of a packet that are to be followed alone, and those that neither are nor have come to the end of the step: a bit each.
 #[derive(Default)]
 pub(super) struct Unsettled {
-    pub(super) left: u32,
-    pub(super) others: u32,
+    pub(super) left: u64,
+    pub(super) others: u64,
 }
 
 impl Unsettled {
@@ -172,7 +172,8 @@ impl TileSweep<'_, '_> {
                 }
             }
         }
-        Unsettled { left: outcome.left & present, others: present & !(outcome.settled | outcome.left) }
+        let others = present & !(outcome.settled | outcome.left);
+        Unsettled { left: u64::from(outcome.left & present), others: u64::from(others) }
     }
 
     /// Terms that all packets have in common.
