@@ -28,13 +28,13 @@ use links::Links;
 /// moves against a rigid motion with the same momenta, and from the ways of soft links too, so that it never gains any, nor does what is left of it
 /// in parts.
 ///
-/// Linear momentum is kept to rounding, but not by a free rope whose links are made heavier (below); so is angular momentum, since links act along the directions that they had when the sub-step began.
+/// Linear momentum is kept to rounding, and so is angular momentum, since links act along the directions that they had when the sub-step began.
 /// Where one of them would turn by more than 30° in it (the end of a whip), or where links are so light for what pulls at
 /// them that they would swing faster than the sub-step shows (a heavy bob), the sub-step is gone through in paces that are short enough for that, with the
 /// forces that the method shows (as multiple time steps: Tuckerman, Berne and Martyna, J. Chem. Phys. 97, 1992): a pendulum swings in its time and as wide as
 /// before, however heavy its bob is and however few the sub-steps are. The number of paces grows with that of links and with the root of how many times as heavy as the rope the
 /// bob is; where 256 are too few (30 links of 0.3 m in all in one sub-step of 1/60 s that hold a thousand times their mass), links are made heavier meanwhile, which makes such a swing slower by
-/// some hundredths. Rounding of what pulls makes light links swing: with a bob of a thousand times the rope's mass by up to some thousandths of the energy of the swing in half a minute.
+/// some hundredths, and is counted as capped in [`Effort`](crate::Effort). Rounding of what pulls makes light links swing: with a bob of a thousand times the rope's mass by up to some thousandths of the energy of the swing in half a minute.
 /// A rope that does not come near its lengths even so goes by the directions that links have at the sub-step's end, which takes energy, or keeps the form that it had as
 /// the sub-step began, if that was nearer, and is counted as capped in [`Effort`](crate::Effort).
 ///
@@ -44,7 +44,7 @@ use links::Links;
 /// that has come to all the energy it may have turns slower for a while (in 50 sub-steps by up to 1 % 30 m off, by 5 % at 100 m; one of a single link so soft
 /// that it is slack most of the time, by a third within a minute at 30 m).
 ///
-/// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing. A link whose ends are in one place
+/// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing, and the parts are solved each by itself. A link whose ends are in one place
 /// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a
 /// [periodic room](crate::index::Periodic) links act along the shortest way through the sides.
 ///
