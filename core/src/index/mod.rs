@@ -40,6 +40,7 @@ mod hash;
 mod kd;
 mod listing;
 mod lists;
+mod making;
 mod near;
 mod nearby;
 mod nearest;
