@@ -20,7 +20,7 @@ const BATCH: usize = 16;
 const ROOM: usize = 1024;
 /// Points that it is worth a thread's while to follow.
 #[cfg(feature = "rayon")]
-const FOLLOWED: usize = 16_384;
+const FOLLOWED: usize = 4096;
 /// Steps that go by without lists after these have been of no use.
 const PAUSE: u32 = 16;
 /// Within what the squares of coordinates and of radii are numbers \[m\].
@@ -131,7 +131,9 @@ impl Lists<'_> {
             [[start, end]] | [[start, _], .., [_, end]] => [*start as usize, *end as usize],
             [] => [0; 2],
         };
-        match self.entries.get(start..end).and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
+        // Who is in no index has no list; if he is the last, these do not end with his.
+        let entries = self.entries.get(start..end).filter(|entries| !entries.is_empty());
+        match entries.and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
             Some((front, entries)) => {
                 if are_many {
                     front.copy_from_slice(entries);

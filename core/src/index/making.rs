@@ -13,7 +13,7 @@ pub(super) const NO_POINT: u32 = u32::MAX;
 /// Points that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 2048;
-/// The largest number of shares of the rows whose lists follow each other: the more there are, the less of what is near a point is near in memory.
+/// The largest number of shares of the rows whose lists lie apart: the more there are, the less of what is near a point is near in memory.
 #[cfg(feature = "rayon")]
 const PARTS: usize = 8;
 /// The lists of a share are written in pieces of this part of the room that there would be for them.
@@ -75,37 +75,39 @@ impl Making<'_> {
             *made = Vec3::from_array(place.x);
             count += 1;
         }
+        if count < self.points.len() {
+            return None;
+        }
         spans.fill([0; 2]);
         let points = 0..self.index.order().len().min(count);
-        let (mut next, mut len, mut fits) = (0, 0, count == self.points.len());
-        fits &= fits
-            && self.index.in_order(points, self.radius, &mut |point, others| {
-                let end = len + others.len();
-                match spans.get_mut(point).zip(entries.get_mut(len..end)) {
-                    Some((span, room)) if point >= next => {
-                        next = point + 1;
-                        *span = [len, end].map(|at| at as u32);
-                        room.copy_from_slice(others);
-                        len = end;
-                    }
-                    _ => fits = false,
+        let (mut next, mut len, mut fits) = (0, 0, true);
+        let all = self.index.in_order(points, self.radius, &mut |point, others| {
+            let end = len + others.len();
+            match spans.get_mut(point).zip(entries.get_mut(len..end)) {
+                Some((span, room)) if point >= next => {
+                    next = point + 1;
+                    *span = [len, end].map(|at| at as u32);
+                    room.copy_from_slice(others);
+                    len = end;
                 }
-            });
-        fits.then_some(1)
+                _ => fits = false,
+            }
+        });
+        (all && fits).then_some(1)
     }
 }
 
 /// The same by several threads.
 ///
-/// Each makes the lists of points that follow each other in the index, so that what is near a group of them is looked for once. When forces are summed, each has a share of
-/// the rows instead. So that it finds the lists of these, and none but these, one after the other in memory, points are numbered share by share, and each thread writes
-/// the lists of each share apart.
+/// Each makes the lists of points that follow each other in the index, so that what is near a group of them is looked for once. When forces
+/// are summed, each has a share of the rows instead. So that it finds the lists of these, and none but these, one after the other in memory,
+/// points are numbered share by share, and each thread writes the lists of each share apart.
 #[cfg(feature = "rayon")]
 impl Making<'_> {
     fn make_side_by_side(&self, parts: &mut Parts<'_>, division: Division, threads: usize) -> Option<()> {
         let Parts { spans, made, places, entries } = parts;
         let len = self.points.len();
-        // Until all lists are made, the numbers and the lists' spans lie in the order of the index where later it is kept where points were.
+        // Where it is kept later where points were, their numbers and the spans of their lists lie until then, in the order of the index.
         let (numbers, listed) = bytemuck::cast_slice_mut::<Vec3, u32>(made).split_at_mut_checked(len)?;
         let listed: &mut [[u32; 2]] = bytemuck::try_cast_slice_mut(listed).ok()?;
         let shares = Shares::new(division);
@@ -191,8 +193,8 @@ struct Filling<'a> {
 
 #[cfg(feature = "rayon")]
 impl Filling<'_> {
-    /// Fills in the lists of some points by so many threads, each with its part of the points and of the room, whose entries are those from `first` on;
-    /// none if there is too little.
+    /// Fills in the lists of some points by so many threads, each with its part of the points and of the room, whose entries are those from
+    /// `first` on; none if there is too little.
     fn side_by_side(
         &self,
         points: Range<usize>,
