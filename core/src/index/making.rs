@@ -2,23 +2,10 @@
 
 use super::sorted::Entry;
 use super::{Room, SpatialIndex, wrapped_in};
-use core::ops::Range;
 use glam::Vec3;
-
-#[cfg(feature = "rayon")]
-use crate::division::Division;
 
 /// The number of no point.
 pub(super) const NO_POINT: u32 = u32::MAX;
-/// Points that are worth a thread's while.
-#[cfg(feature = "rayon")]
-const SHARE: usize = 2048;
-/// The largest number of shares of the rows whose lists lie apart: the more there are, the less of what is near a point is near in memory.
-#[cfg(feature = "rayon")]
-const PARTS: usize = 8;
-/// The lists of a share are written in pieces of this part of the room that there would be for them.
-#[cfg(feature = "rayon")]
-const PIECES: usize = 16;
 
 /// The parts of memory for lists.
 pub(super) struct Parts<'a> {
@@ -45,18 +32,14 @@ impl Making<'_> {
     /// Makes them, and says in how many shares of the rows they lie one after the other; none if there is no room.
     pub(super) fn make(&self, parts: &mut Parts<'_>) -> Option<usize> {
         #[cfg(feature = "rayon")]
-        {
-            let threads = Division::among_threads(self.points.len(), SHARE).parts();
-            let division = Division::new(self.points.len(), threads.min(PARTS));
-            if threads > 1 && self.make_side_by_side(parts, division, threads).is_some() {
-                return Some(division.parts());
-            }
+        if let Some(shares) = self.make_side_by_side(parts) {
+            return Some(shares);
         }
         self.make_one_by_one(parts)
     }
 
     /// All rows in the index's order, those behind that are in none: whoever is not finite is watched as well, as it may come near others.
-    fn rows(&self) -> impl Iterator<Item = u32> {
+    pub(super) fn rows(&self) -> impl Iterator<Item = u32> {
         let absent = (0..).zip(self.points).filter(|(_, point)| !point.is_finite()).map(|(row, _)| row);
         self.index.order().iter().copied().chain(absent)
     }
@@ -94,219 +77,5 @@ impl Making<'_> {
             }
         });
         (all && fits).then_some(1)
-    }
-}
-
-/// The same by several threads.
-///
-/// Each makes the lists of points that follow each other in the index, so that what is near a group of them is looked for once. When forces
-/// are summed, each has a share of the rows instead. So that it finds the lists of these, and none but these, one after the other in memory,
-/// points are numbered share by share, and each thread writes the lists of each share apart.
-#[cfg(feature = "rayon")]
-impl Making<'_> {
-    fn make_side_by_side(&self, parts: &mut Parts<'_>, division: Division, threads: usize) -> Option<()> {
-        let Parts { spans, made, places, entries } = parts;
-        let len = self.points.len();
-        // Where it is kept later where points were, their numbers and the spans of their lists lie until then, in the order of the index.
-        let (numbers, listed) = bytemuck::cast_slice_mut::<Vec3, u32>(made).split_at_mut_checked(len)?;
-        let listed: &mut [[u32; 2]] = bytemuck::try_cast_slice_mut(listed).ok()?;
-        let shares = Shares::new(division);
-        self.number(&shares, numbers, places)?;
-        listed.fill([0; 2]);
-        let points = 0..self.index.order().len().min(len);
-        let filling = Filling { making: *self, shares: &shares, numbers };
-        filling.side_by_side(points, listed, (0, entries), threads)?;
-        for (number, span) in numbers.iter().zip(listed) {
-            *spans.get_mut(*number as usize)? = *span;
-        }
-        self.take_places(places, made, threads);
-        Some(())
-    }
-
-    /// Numbers all points, given in the order of the index: those of each share of the rows after those of the share before. Says whose
-    /// each place is.
-    fn number(&self, shares: &Shares, numbers: &mut [u32], places: &mut [Entry]) -> Option<()> {
-        let (mut next, mut count) = (shares.starts, 0);
-        for (number, row) in numbers.iter_mut().zip(self.rows()) {
-            self.points.get(row as usize)?;
-            let next = &mut next[shares.of(row)];
-            *number = *next;
-            places.get_mut(*next as usize)?.row = row;
-            *next += 1;
-            count += 1;
-        }
-        // An index that has a row twice, and others never, does not number all.
-        let are_full = (0..PARTS).all(|share| next[share] == shares.ends[share]);
-        (are_full && count == self.points.len()).then_some(())
-    }
-
-    /// Keeps where all are, by so many threads.
-    fn take_places(&self, places: &mut [Entry], made: &mut [Vec3], threads: usize) {
-        if threads < 2 {
-            for (place, made) in places.iter_mut().zip(made) {
-                *made = wrapped_in(self.room, self.points[place.row as usize]);
-                place.x = made.to_array();
-            }
-            return;
-        }
-        let len = Division::new(places.len(), threads).start(threads / 2);
-        let ((front, back), made) = (places.split_at_mut(len), made.split_at_mut(len));
-        rayon::join(
-            || self.take_places(front, made.0, threads / 2),
-            || self.take_places(back, made.1, threads - threads / 2),
-        );
-    }
-}
-
-/// Shares of the rows.
-#[cfg(feature = "rayon")]
-struct Shares {
-    /// The rows with which they begin and end.
-    starts: [u32; PARTS],
-    ends: [u32; PARTS],
-    /// The number of them.
-    parts: usize,
-}
-
-#[cfg(feature = "rayon")]
-impl Shares {
-    fn new(division: Division) -> Self {
-        let start = |part: usize| division.start(part.min(division.parts())) as u32;
-        let starts = core::array::from_fn(start);
-        Self { starts, ends: core::array::from_fn(|part| start(part + 1)), parts: division.parts() }
-    }
-
-    /// The share in which a row is.
-    fn of(&self, row: u32) -> usize {
-        self.ends.iter().map(|&end| usize::from(row >= end)).sum::<usize>() % PARTS
-    }
-}
-
-/// How lists are filled in by several threads.
-#[cfg(feature = "rayon")]
-struct Filling<'a> {
-    making: Making<'a>,
-    shares: &'a Shares,
-    /// The numbers of points, in the order of the index.
-    numbers: &'a [u32],
-}
-
-#[cfg(feature = "rayon")]
-impl Filling<'_> {
-    /// Fills in the lists of some points by so many threads, each with its part of the points and of the room, whose entries are those from
-    /// `first` on; none if there is too little.
-    fn side_by_side(
-        &self,
-        points: Range<usize>,
-        spans: &mut [[u32; 2]],
-        (first, entries): (usize, &mut [u32]),
-        threads: usize,
-    ) -> Option<()> {
-        if threads < 2 {
-            return self.one_by_one(points, spans, (first, entries));
-        }
-        let middle = |whole: usize| Division::new(whole, threads).start(threads / 2);
-        let (len, room) = (middle(points.len()), middle(entries.len()));
-        let (front, back) = spans.split_at_mut(len);
-        let (front_room, back_room) = entries.split_at_mut(room);
-        let middle = points.start + len;
-        let (front, back) = rayon::join(
-            || self.side_by_side(points.start..middle, front, (first, front_room), threads / 2),
-            || self.side_by_side(middle..points.end, back, (first + room, back_room), threads - threads / 2),
-        );
-        front.and(back)
-    }
-
-    /// The same by one thread.
-    fn one_by_one(
-        &self,
-        points: Range<usize>,
-        spans: &mut [[u32; 2]],
-        (first, entries): (usize, &mut [u32]),
-    ) -> Option<()> {
-        let (mut next, start, mut fits) = (0, points.start, true);
-        let mut pieces = Pieces::new(entries, self.shares.parts);
-        let all = self.making.index.in_order(points, self.making.radius, &mut |point, others| {
-            let place = point.wrapping_sub(start);
-            let number = self.numbers.get(point).copied().unwrap_or(NO_POINT);
-            match spans.get_mut(place).zip(pieces.take(self.shares.of(number), others.len())) {
-                Some((span, (at, room))) if place >= next => {
-                    next = place + 1;
-                    *span = [first + at, first + at + others.len()].map(|at| at as u32);
-                    for (entry, other) in room.iter_mut().zip(others) {
-                        *entry = self.numbers.get(*other as usize).copied().unwrap_or(NO_POINT);
-                    }
-                }
-                _ => fits = false,
-            }
-        });
-        (all && fits).then_some(())
-    }
-}
-
-/// Room for lists, given out in pieces to shares of the rows.
-#[cfg(feature = "rayon")]
-struct Pieces<'e> {
-    entries: &'e mut [u32],
-    /// The size of a piece, and what has been given out.
-    size: usize,
-    given: usize,
-    /// What is left of each share's last piece.
-    left: [Range<usize>; PARTS],
-}
-
-#[cfg(feature = "rayon")]
-impl<'e> Pieces<'e> {
-    fn new(entries: &'e mut [u32], shares: usize) -> Self {
-        let size = entries.len() / (PIECES * shares);
-        Self { entries, size, given: 0, left: [const { 0..0 }; PARTS] }
-    }
-
-    /// Room of a share for a list so long, and where it begins; none if there is none.
-    fn take(&mut self, share: usize, len: usize) -> Option<(usize, &mut [u32])> {
-        let left = self.left.get_mut(share)?;
-        if left.len() < len {
-            let end = self.given.saturating_add(self.size.max(len)).min(self.entries.len());
-            // A piece goes on where none has been given out since.
-            *left = if left.end == self.given { left.start } else { self.given }..end;
-            self.given = end;
-        }
-        let (at, end) = (left.start, left.start + len);
-        if end > left.end {
-            return None;
-        }
-        left.start = end;
-        Some((at, self.entries.get_mut(at..end)?))
-    }
-}
-
-#[cfg(all(test, feature = "rayon"))]
-mod tests {
-    use super::{PARTS, Pieces};
-
-    #[test]
-    fn pieces_lie_apart_and_leave_little_room() {
-        for shares in 1..=PARTS {
-            let (mut owners, mut entries) = (std::vec![None; 20_000], std::vec![0; 20_000]);
-            let mut pieces = Pieces::new(&mut entries, shares);
-            let mut seed = 7_u32;
-            let mut number = || {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                (seed >> 16) as usize
-            };
-            let (mut taken, mut share) = (0, 0);
-            loop {
-                // Now one share has its turn for long, now all have.
-                share = if number() % 64 < 60 { share } else { number() % shares };
-                let len = number() % 60;
-                let Some((at, room)) = pieces.take(share, len) else { break };
-                assert_eq!(room.len(), len);
-                for owner in &mut owners[at..at + len] {
-                    assert_eq!(owner.replace(share), None, "{shares} shares");
-                }
-                taken += len;
-            }
-            assert!(taken > 20_000 * 9 / 10 - 60 * (16 + 1) * shares, "{taken} of {shares} shares");
-        }
     }
 }

@@ -57,6 +57,8 @@ mod split;
 mod state_index;
 mod stats;
 mod structure;
+#[cfg(feature = "rayon")]
+mod threads;
 mod tree;
 
 #[cfg(feature = "std")]
