@@ -33,8 +33,9 @@ impl Dynamics for Field<'_> {
         }
         let inverse_mass = &attributes.inverse_mass[rows.clone()];
         finder.with_state(time, position, velocity, &mut |state| {
-            Sums { forces, springs, state }.accelerate(rows.clone(), inverse_mass, acceleration);
+            add_all((forces, springs), state, rows.clone(), acceleration);
         });
+        divide_by_masses(acceleration, inverse_mass);
     }
 
     fn linearise(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: &mut dyn FnMut(&Linear<'_>)) {
@@ -57,67 +58,57 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
     scale_each(forces, inverse_mass);
 }
 
+/// Forces, and those of springs.
+type Forces<'a> = (&'a dyn Force, Option<SpringForce>);
+
+/// The forces on some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
+fn add_all(forces: Forces<'_>, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+    #[cfg(feature = "rayon")]
+    if can_be_divided(state) {
+        let division = Division::among_threads(rows.len(), SHARE);
+        return add_side_by_side(forces, state, rows.start, (0..division.parts(), division), total);
+    }
+    add_at_once(forces, state, rows, total);
+}
+
+/// The same by one thread, forces of springs behind the others.
+#[cfg_attr(target_os = "none", inline(never))]
+fn add_at_once((forces, springs): Forces<'_>, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+    total.fill(Vec3::ZERO);
+    forces.add_to(state, rows.clone(), total);
+    if let Some(force) = springs {
+        force(&state.springs).add_to(state, rows, total);
+    }
+}
+
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 2048;
 
-/// The forces in a state.
-#[derive(Clone, Copy)]
-struct Sums<'s, 'a> {
-    forces: &'s dyn Force,
-    springs: Option<SpringForce>,
-    state: &'s State<'a>,
+/// Tells whether a part of the rows costs no more than its share: trees divide themselves, and an index would be asked
+/// for all.
+#[cfg(feature = "rayon")]
+fn can_be_divided(state: &State<'_>) -> bool {
+    state.near.can_be_divided() && state.mass_tree.is_none() && state.charge_tree.is_none()
 }
 
-impl Sums<'_, '_> {
-    /// The accelerations of some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
-    fn accelerate(&self, rows: Range<usize>, inverse_mass: &[f32], total: &mut [Vec3]) {
-        #[cfg(feature = "rayon")]
-        if self.can_be_divided() {
-            let division = Division::among_threads(rows.len(), SHARE);
-            return self.accelerate_side_by_side(rows.start, (0..division.parts(), division), inverse_mass, total);
-        }
-        self.accelerate_at_once(rows, inverse_mass, total);
+/// The forces on some parts of the rows from `first` on, by one thread for each.
+#[cfg(feature = "rayon")]
+fn add_side_by_side(
+    forces: Forces<'_>,
+    state: &State<'_>,
+    first: usize,
+    (parts, division): (Range<usize>, Division),
+    total: &mut [Vec3],
+) {
+    let [start, end] = [parts.start, parts.end].map(|part| division.start(part));
+    if parts.len() < 2 {
+        return add_at_once(forces, state, first + start..first + end, total);
     }
-
-    /// The same by one thread, forces of springs behind the others.
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn accelerate_at_once(&self, rows: Range<usize>, inverse_mass: &[f32], total: &mut [Vec3]) {
-        let Self { forces, springs, state } = *self;
-        total.fill(Vec3::ZERO);
-        forces.add_to(state, rows.clone(), total);
-        if let Some(force) = springs {
-            force(&state.springs).add_to(state, rows, total);
-        }
-        divide_by_masses(total, inverse_mass);
-    }
-
-    /// Tells whether a part of the rows costs no more than its share: trees divide themselves, and an index would be asked
-    /// for all.
-    #[cfg(feature = "rayon")]
-    fn can_be_divided(&self) -> bool {
-        self.state.near.can_be_divided() && self.state.mass_tree.is_none() && self.state.charge_tree.is_none()
-    }
-
-    /// The accelerations of some parts of the rows from `first` on, one thread for each.
-    #[cfg(feature = "rayon")]
-    fn accelerate_side_by_side(
-        &self,
-        first: usize,
-        (parts, division): (Range<usize>, Division),
-        inverse_mass: &[f32],
-        total: &mut [Vec3],
-    ) {
-        let [start, end] = [parts.start, parts.end].map(|part| division.start(part));
-        if parts.len() < 2 {
-            return self.accelerate_at_once(first + start..first + end, inverse_mass, total);
-        }
-        let middle = parts.start + parts.len() / 2;
-        let len = division.start(middle) - start;
-        let ((front, back), masses) = (total.split_at_mut(len), inverse_mass.split_at(len));
-        rayon::join(
-            || self.accelerate_side_by_side(first, (parts.start..middle, division), masses.0, front),
-            || self.accelerate_side_by_side(first, (middle..parts.end, division), masses.1, back),
-        );
-    }
+    let middle = parts.start + parts.len() / 2;
+    let (front, back) = total.split_at_mut(division.start(middle) - start);
+    rayon::join(
+        || add_side_by_side(forces, state, first, (parts.start..middle, division), front),
+        || add_side_by_side(forces, state, first, (middle..parts.end, division), back),
+    );
 }
