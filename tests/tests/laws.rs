@@ -12,6 +12,7 @@ mod carried;
 mod circles;
 mod clusters;
 mod collisions;
+mod company;
 mod compounds;
 mod constraints;
 #[path = "contacts/main.rs"]

@@ -5,6 +5,7 @@ use crate::math::{largest, max, min};
 use crate::rows::{Extents, farthest, filled, largest_of};
 use crate::shape::{Aabb, Face};
 use core::ops::Range;
+use core::slice;
 use glam::Vec3;
 use wide::f32x4;
 
@@ -25,6 +26,8 @@ pub(super) struct Near {
 pub(super) struct Balls<'a> {
     pub(super) ends: [&'a [Vec3]; 4],
     pub(super) radius: &'a [f32],
+    /// What these are, if it is known to be one number.
+    pub(super) common: Option<f32>,
     pub(super) time: f32,
 }
 
@@ -50,10 +53,10 @@ impl<'a> Balls<'a> {
     /// No more than a block of them, which have `reached` so far, where that is known.
     #[inline]
     pub(super) fn block(&self, rows: Range<usize>, reached: Option<Extents>) -> Block<'a> {
-        let Self { ends, radius, time } = *self;
-        let balls = Self { ends: ends.map(|column| &column[rows.clone()]), radius: &radius[rows], time };
+        let Self { ends, radius, common, time } = *self;
+        let balls = Self { ends: ends.map(|column| &column[rows.clone()]), radius: &radius[rows], common, time };
         let third = balls.third();
-        let radius = largest_of(balls.radius);
+        let radius = largest_of(common.as_ref().map_or(balls.radius, slice::from_ref));
         match reached {
             // Where they are, no coordinate is beyond `place`. They began no farther from there than the way at the largest speed, and
             // a control point is a third of that way from its end.

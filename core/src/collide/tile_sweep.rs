@@ -144,7 +144,7 @@ impl TileSweep<'_, '_> {
         let ([x0, v0], all) = (self.past.start, self.first..position.len());
         let rows = all.len().min(x0.len());
         let ends = [x0, v0, &position[all.clone()], &velocity[all.clone()]].map(|column| &column[..rows]);
-        Balls { ends, radius: &m.lives.radius[all][..rows], time: dt.seconds() }
+        Balls { ends, radius: &m.lives.radius[all][..rows], common: m.common.radius(), time: dt.seconds() }
     }
 
     /// The face that an old row is near, if that is all.

@@ -2,6 +2,7 @@
 
 use super::{Inertia, State};
 use crate::custom::CustomColumns;
+use crate::memory::InCommon;
 use crate::time::Time;
 use core::ops::Range;
 use glam::Vec3;
@@ -13,8 +14,8 @@ pub(crate) struct Attributes<'a> {
     pub(crate) lives: State<'a>,
     pub(crate) inverse_mass: &'a [f32],
     pub(crate) elasticity: &'a [f32],
-    /// True if all are known to have the same mass and drag.
-    pub(crate) are_alike: bool,
+    /// What all are known to have in common.
+    pub(crate) common: &'a InCommon,
 }
 
 impl<'a> Attributes<'a> {
@@ -37,9 +38,9 @@ impl<'a> Attributes<'a> {
 
     /// The columns that tell how some rows fall.
     pub(crate) fn inertia(&self, rows: Range<usize>) -> Inertia<'a> {
-        let Self { lives, inverse_mass, are_alike, .. } = *self;
+        let Self { lives, inverse_mass, common, .. } = *self;
         let [mass, drag, inverse_mass] = [lives.mass, lives.drag, inverse_mass].map(|column| &column[rows.clone()]);
-        Inertia { mass, drag, inverse_mass, are_alike }
+        Inertia { mass, drag, inverse_mass, common: common.inertia() }
     }
 
     /// Those of some rows.
@@ -48,7 +49,7 @@ impl<'a> Attributes<'a> {
             inverse_mass: &self.inverse_mass[rows.clone()],
             elasticity: &self.elasticity[rows.clone()],
             lives: self.lives.attributes_of(rows),
-            are_alike: self.are_alike,
+            common: self.common,
         }
     }
 }

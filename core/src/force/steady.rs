@@ -74,8 +74,8 @@ impl Steady {
     }
 
     fn fall<const FALLS: bool, const DRAGS: bool>(self, rows: Inertia<'_>) -> Fall<'_, FALLS, DRAGS> {
-        let Inertia { mass, drag, inverse_mass, are_alike } = rows;
-        Fall { g: self.acceleration.unwrap_or(Vec3::ZERO), mass, drag, inverse_mass, are_alike }
+        let Inertia { mass, drag, inverse_mass, common } = rows;
+        Fall { g: self.acceleration.unwrap_or(Vec3::ZERO), mass, drag, inverse_mass, common }
     }
 }
 
@@ -88,8 +88,8 @@ pub(crate) struct Inertia<'a> {
     pub(crate) mass: &'a [f32],
     pub(crate) drag: &'a [f32],
     pub(crate) inverse_mass: &'a [f32],
-    /// True if each column is known to be one number all over.
-    pub(crate) are_alike: bool,
+    /// The numbers that these consist of, if that is known.
+    pub(crate) common: Option<[f32; 3]>,
 }
 
 #[cfg(test)]
@@ -131,8 +131,13 @@ mod tests {
             for forces in [&() as &dyn Force, &g, &Drag {}, &(g, Drag {}), &(Drag {}, g), &((), (g, ()), [Drag {}])] {
                 let steady = forces.steady().expect("it is steady");
                 let (mut once, mut sum) = (std::vec![Vec3::ONE; len], std::vec![Vec3::ZERO; len]);
-                let are_alike = len % 12 == 0;
-                let rows = Inertia { mass: &mass, drag: &drag, inverse_mass: &inverse_mass, are_alike };
+                let first = [&mass, &drag, &inverse_mass].map(|column| column.first().copied());
+                let common = if let ([Some(m), Some(k), Some(inverse)], true) = (first, len % 12 == 0) {
+                    Some([m, k, inverse])
+                } else {
+                    None
+                };
+                let rows = Inertia { mass: &mass, drag: &drag, inverse_mass: &inverse_mass, common };
                 steady.accelerate(rows, &velocity, &mut once);
                 forces.add_to(&state, 0..len, &mut sum);
                 for (sum, &inverse) in sum.iter_mut().zip(&inverse_mass) {

@@ -1,5 +1,6 @@
 //! A system with its memory at hand: every phase of a step works on it, and particles are put into it.
 
+use super::in_common::InCommon;
 use super::{Size, Slices, Words};
 use crate::index::Listed;
 use crate::particles::{Full, Id, Particle, Start};
@@ -52,55 +53,14 @@ pub(crate) struct Status {
     /// The words that the scene keeps of particles.
     pub(crate) kept: Words,
     pub(crate) time: Time,
-    /// What is known of the masses and drags of all.
-    pub(crate) inertias: Inertias,
+    /// What all are known to have in common.
+    pub(crate) common: InCommon,
     /// How long before the end of all time the first of them dies of age, or sooner: an empty system is nothing but zeros.
     pub(crate) ends_before_never: Time,
     /// The step that an integrator which chooses its own goes on with.
     pub(crate) hint: Time,
     pub(crate) seed: u64,
     pub(crate) totals: Report,
-}
-
-/// The mass and the drag of the first that has come since a start, whether it is fixed, and who is like it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Inertias {
-    likeness: Likeness,
-    mass: f32,
-    drag: f32,
-    fixed: bool,
-}
-
-/// Who is like the first. Nobody has come is the first of these, so that an empty system is nothing but zeros.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Likeness {
-    #[default]
-    Nobody,
-    All,
-    Some,
-}
-
-impl Inertias {
-    const UNKNOWN: Self = Self { likeness: Likeness::Nobody, mass: 0.0, drag: 0.0, fixed: false };
-
-    /// They change, each by itself.
-    pub(crate) const VARIOUS: Self = Self { likeness: Likeness::Some, ..Self::UNKNOWN };
-
-    /// Tells whether all are known to have the same.
-    pub(crate) fn are_alike(&self) -> bool {
-        self.likeness == Likeness::All
-    }
-
-    /// Another one comes.
-    pub(crate) fn add(&mut self, &Particle { mass, drag, fixed, .. }: &Particle) {
-        let is_like =
-            self.mass.to_bits() == mass.to_bits() && self.drag.to_bits() == drag.to_bits() && self.fixed == fixed;
-        match self.likeness {
-            Likeness::Nobody => *self = Self { likeness: Likeness::All, mass, drag, fixed },
-            Likeness::All if !is_like => self.likeness = Likeness::Some,
-            _ => {}
-        }
-    }
 }
 
 impl Status {
@@ -118,7 +78,7 @@ impl Status {
         changes: 0,
         kept: Words::NONE,
         time: Time::ZERO,
-        inertias: Inertias::UNKNOWN,
+        common: InCommon::UNKNOWN,
         ends_before_never: Time::ZERO,
         hint: Time::ZERO,
         seed: 0,
@@ -222,7 +182,7 @@ impl Workspace<'_> {
         m.dies[row] = dies;
         if TILED {
             status.ends_at(dies);
-            status.inertias.add(like);
+            status.common.add([m.mass[row], m.drag[row], m.inverse_mass[row], m.radius[row], m.elasticity[row]]);
         }
         m.pending_death[row] = PendingDeath::Lives;
         (0..status.kept.per_row).for_each(|number| m.kept[number * capacity + row] = 0);

@@ -12,8 +12,8 @@ pub(crate) struct Fall<'a, const FALLS: bool, const DRAGS: bool> {
     pub(crate) mass: &'a [f32],
     pub(crate) drag: &'a [f32],
     pub(crate) inverse_mass: &'a [f32],
-    /// True if each column is known to be one number all over.
-    pub(crate) are_alike: bool,
+    /// The numbers that these consist of, if that is known.
+    pub(crate) common: Option<[f32; 3]>,
 }
 
 /// Finds their accelerations.
@@ -234,8 +234,10 @@ impl<'a, const FALLS: bool, const DRAGS: bool> Fall<'a, FALLS, DRAGS> {
     /// The factors, if they are the same for all rows and nobody is fixed, as where one emitter feeds a fountain.
     #[inline(always)]
     fn of_all(&self) -> Option<[f32; 3]> {
-        let same = |column: &[f32]| if self.are_alike { column.first().copied() } else { same(column) };
-        let factors = [same(self.mass)?, same(self.drag)?, same(self.inverse_mass)?];
+        let factors = match self.common {
+            Some(factors) => factors,
+            None => [same(self.mass)?, same(self.drag)?, same(self.inverse_mass)?],
+        };
         (factors[2] != 0.0).then_some(factors)
     }
 

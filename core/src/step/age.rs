@@ -1,6 +1,6 @@
 //! Age: materials change drags and masses over the lives of particles.
 
-use crate::memory::{Inertias, Layout, Workspace};
+use crate::memory::{Layout, Workspace};
 use crate::scene::Scene;
 use crate::time::Time;
 
@@ -9,7 +9,7 @@ impl Workspace<'_> {
     #[inline(never)]
     pub(super) fn age(&mut self, scene: &Scene<'_>, layout: &Layout, [now, dt]: [Time; 2]) {
         let Some(code) = scene.materials.code().filter(|code| (code.kept)(scene.materials) > 0) else { return };
-        self.status.inertias = Inertias::VARIOUS;
+        self.status.common.vary_inertias();
         (code.age)(scene.materials, [now, now + dt], self.len(), layout, self.memory);
     }
 }

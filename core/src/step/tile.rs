@@ -152,7 +152,7 @@ impl Workspace<'_> {
                 lives,
                 inverse_mass: &m.inverse_mass[..len],
                 elasticity: &m.elasticity[..len],
-                are_alike: self.status.inertias.are_alike(),
+                common: &self.status.common,
             },
             work: m.work,
             layout,

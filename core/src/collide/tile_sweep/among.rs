@@ -10,10 +10,12 @@ use crate::collide::packet::{BOXES, EITHER, SPHERES};
 use crate::collide::sweep::surroundings;
 use crate::collide::tile::Tile;
 use crate::collide::waiting::ones;
+use crate::force::Attributes;
 use crate::lanes::{LANES, run_broad, widest};
 use crate::math::{largest, max};
 use crate::shape::{Aabb, Clearance, Face, Facing, Few, Many, Solid};
 use core::ops::Range;
+use core::slice;
 
 /// Things that rows go among, the box around all of them, and the face outside it.
 struct Among<'m> {
@@ -100,7 +102,8 @@ impl TileSweep<'_, '_> {
         self.are_points &= are_points;
         let asked = either(&past_face.touching, &by_things);
         // Who gains speed by hits may get anywhere.
-        if !never_gain(&self.tile.attributes.elasticity[rows]) {
+        let Attributes { elasticity, common, .. } = self.tile.attributes;
+        if !never_gain(common.elasticity().as_ref().map_or(&elasticity[rows], slice::from_ref)) {
             for (i, marks) in asked.iter().enumerate() {
                 for k in ones(*marks) {
                     if self.go_between(first + LANES * i + k, among) {

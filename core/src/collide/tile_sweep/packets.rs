@@ -225,9 +225,12 @@ impl TileSweep<'_, '_> {
     ) -> [F; 17] {
         let Tile { attributes: ref m, ref position, ref velocity, .. } = *self.tile;
         let (at, last) = (&places_from(first, rows), position.len() - 1 - first);
-        let column = |column: &[f32]| {
+        let column = |column: &[f32], common: Option<f32>| {
             let (mut lanes, column) = ([0.0; LANES], &column[first..][..last]);
-            lanes.iter_mut().zip(at).for_each(|(lane, &row)| *lane = column[row]);
+            match common {
+                Some(number) => lanes = [number; LANES],
+                None => lanes.iter_mut().zip(at).for_each(|(lane, &row)| *lane = column[row]),
+            }
             lanes
         };
         // Rows that have leapt are finite, and such as are held have stayed as they were, which is not how something falls onto a face.
@@ -243,16 +246,17 @@ impl TileSweep<'_, '_> {
         let mut are_free = like.all(f32::from_bits(u32::MAX));
         if !(LIES && have_leapt) {
             let paths = Paths { x0, v0, x1, v1, time: like.all(time) };
-            are_free = paths.are_finite() & not(like.of(column(m.inverse_mass)).simd_eq(like.all(0.0)));
+            are_free = paths.are_finite()
+                & not(like.of(column(m.inverse_mass, m.common.inverse_mass())).simd_eq(like.all(0.0)));
         }
         let (mut elasticity, mut at_rest, mut kinetic) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         if !LIES || self.has_materials {
-            elasticity = column(m.elasticity);
+            elasticity = column(m.elasticity, m.common.elasticity());
         }
         if self.has_materials {
             [elasticity, at_rest, kinetic] = self.mixed(rows, material, &elasticity);
         }
-        let radius = if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius)) };
+        let radius = if POINTS { like.all(0.0) } else { like.of(column(m.lives.radius, m.common.radius())) };
         let (Vectors([a, b, c]), Vectors([d, e, f]), Vectors([g, h, i]), Vectors([j, k, l])) = (x0, v0, x1, v1);
         let [elasticity, at_rest, kinetic] = [like.of(elasticity), like.of(at_rest), like.of(kinetic)];
         [a, b, c, d, e, f, g, h, i, j, k, l, are_free, radius, elasticity, at_rest, kinetic]
