@@ -22,7 +22,7 @@ const ROOM: usize = 1024;
 #[cfg(feature = "rayon")]
 const FOLLOWED: usize = 4096;
 /// Steps that go by without lists after these have been of no use.
-const PAUSE: u16 = 16;
+const PAUSE: u8 = 16;
 /// Within what the squares of coordinates and of radii are numbers \[m\].
 const TAME: Range<f32> = 1e-15..1e15;
 
@@ -39,10 +39,10 @@ pub(crate) struct Listed {
     /// Words that were lent for them: others are not theirs.
     words: usize,
     /// How often they have been of use, and how many more times there are to be none.
-    uses: u32,
-    pause: u16,
+    uses: u16,
+    pause: u8,
     /// The parts of the rows whose lists follow each other; none before there are lists, so that an empty system is nothing but zeros.
-    parts: u16,
+    parts: u8,
 }
 
 /// The memory of lists, and what is known of them.
@@ -248,7 +248,7 @@ impl<'a> ListMemory<'a> {
         let made = making.make(&mut parts(self.words, points.len()));
         // Not again as soon, if there is no room.
         self.listed.pause = if made.is_some() { 0 } else { PAUSE };
-        let (parts, changes, words, uses, pause) = (made? as u16, self.changes, self.words.len(), 1, 0);
+        let (parts, changes, words, uses, pause) = (made? as u8, self.changes, self.words.len(), 1, 0);
         // Half of the skin each, less what rounding may come to.
         let size = max(farthest(points), self.room.map_or(0.0, |room| largest(room.sides())));
         let max_travel = 0.499 * skin - 4.0 * f32::EPSILON * size;

@@ -33,7 +33,7 @@ impl Dynamics for Field<'_> {
         }
         let inverse_mass = &attributes.inverse_mass[rows.clone()];
         finder.with_state(time, position, velocity, &mut |state| {
-            add_all((forces, springs), state, rows.clone(), acceleration);
+            add_side_by_side(forces, springs, state, rows.clone(), acceleration);
         });
         divide_by_masses(acceleration, inverse_mass);
     }
@@ -58,28 +58,25 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
     scale_each(forces, inverse_mass);
 }
 
-/// Forces, and those of springs.
-type Forces<'a> = (&'a dyn Force, Option<SpringForce>);
-
-/// The forces on some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
-fn add_all(forces: Forces<'_>, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-    #[cfg(feature = "rayon")]
-    if can_be_divided(state) {
-        let division = Division::among_threads(rows.len(), SHARE);
-        return add_side_by_side(forces, state, rows.start, (0..division.parts(), division), total);
-    }
-    add_at_once(forces, state, rows, total);
-}
-
-/// The same by one thread, forces of springs behind the others.
+/// The forces on some rows, those of springs behind the others.
 #[cfg_attr(target_os = "none", inline(never))]
-fn add_at_once((forces, springs): Forces<'_>, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
+fn add_all(
+    forces: &dyn Force,
+    springs: Option<SpringForce>,
+    state: &State<'_>,
+    rows: Range<usize>,
+    total: &mut [Vec3],
+) {
     total.fill(Vec3::ZERO);
     forces.add_to(state, rows.clone(), total);
     if let Some(force) = springs {
         force(&state.springs).add_to(state, rows, total);
     }
 }
+
+/// The same without threads.
+#[cfg(not(feature = "rayon"))]
+use add_all as add_side_by_side;
 
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
@@ -92,23 +89,29 @@ fn can_be_divided(state: &State<'_>) -> bool {
     state.near.can_be_divided() && state.mass_tree.is_none() && state.charge_tree.is_none()
 }
 
-/// The forces on some parts of the rows from `first` on, by one thread for each.
+/// The forces on some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
 #[cfg(feature = "rayon")]
 fn add_side_by_side(
-    forces: Forces<'_>,
+    forces: &dyn Force,
+    springs: Option<SpringForce>,
     state: &State<'_>,
-    first: usize,
-    (parts, division): (Range<usize>, Division),
+    rows: Range<usize>,
     total: &mut [Vec3],
 ) {
-    let [start, end] = [parts.start, parts.end].map(|part| division.start(part));
-    if parts.len() < 2 {
-        return add_at_once(forces, state, first + start..first + end, total);
+    let parts = if can_be_divided(state) { Division::among_threads(rows.len(), SHARE).parts() } else { 1 };
+    divide(&|rows, total| add_all(forces, springs, state, rows, total), rows, total, parts);
+}
+
+/// Lets so many threads fill in so many parts of the rows.
+#[cfg(feature = "rayon")]
+fn divide(fill: &(dyn Fn(Range<usize>, &mut [Vec3]) + Sync), rows: Range<usize>, total: &mut [Vec3], parts: usize) {
+    if parts < 2 {
+        return fill(rows, total);
     }
-    let middle = parts.start + parts.len() / 2;
-    let (front, back) = total.split_at_mut(division.start(middle) - start);
+    let len = Division::new(rows.len(), parts).start(parts / 2);
+    let (middle, (front, back)) = (rows.start + len, total.split_at_mut(len));
     rayon::join(
-        || add_side_by_side(forces, state, first, (parts.start..middle, division), front),
-        || add_side_by_side(forces, state, first, (middle..parts.end, division), back),
+        || divide(fill, rows.start..middle, front, parts / 2),
+        || divide(fill, middle..rows.end, back, parts - parts / 2),
     );
 }

@@ -7,29 +7,32 @@ pub(crate) const NUMBERS: usize = 5;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct InCommon {
     first: [f32; NUMBERS],
-    /// False if nobody has come, so that an empty system is nothing but zeros.
-    is_known: bool,
-    differ: [bool; NUMBERS],
+    /// A bit for each in which somebody differs, and one that is set once somebody has come: an empty system is nothing but zeros.
+    differ: u8,
 }
 
+/// The bit of whether somebody has come, and those of mass, drag and inverse mass.
+const BEGUN: u8 = 1 << NUMBERS;
+const INERTIA: u8 = 0b111;
+
 impl InCommon {
-    pub(crate) const UNKNOWN: Self = Self { first: [0.0; NUMBERS], is_known: false, differ: [false; NUMBERS] };
+    pub(crate) const UNKNOWN: Self = Self { first: [0.0; NUMBERS], differ: 0 };
 
     /// Another one comes, who has these.
     #[inline]
     pub(crate) fn add(&mut self, numbers: [f32; NUMBERS]) {
-        if !self.is_known {
-            (self.first, self.is_known) = (numbers, true);
+        if self.differ & BEGUN == 0 {
+            self.first = numbers;
         }
-        for ((differs, first), number) in self.differ.iter_mut().zip(self.first).zip(numbers) {
-            *differs |= first.to_bits() != number.to_bits();
+        self.differ |= BEGUN;
+        for (i, (first, number)) in self.first.iter().zip(numbers).enumerate() {
+            self.differ |= u8::from(first.to_bits() != number.to_bits()) << i;
         }
     }
 
     /// Masses and drags change from now on, each by itself.
     pub(crate) fn vary_inertias(&mut self) {
-        let [mass, drag, inverse_mass, ..] = &mut self.differ;
-        [*mass, *drag, *inverse_mass] = [true; 3];
+        self.differ |= INERTIA;
     }
 
     /// Mass, drag and inverse mass, if all have the same.
@@ -50,6 +53,6 @@ impl InCommon {
     }
 
     fn number(&self, which: usize) -> Option<f32> {
-        (self.is_known && !self.differ[which]).then_some(self.first[which])
+        (self.differ & (BEGUN | 1 << which) == BEGUN).then_some(self.first[which])
     }
 }
