@@ -58,7 +58,7 @@ fn who_differs_from_all_others_goes_as_if_alone() {
     let things = Scenery::new((0..20).map(thing).map(|thing| (thing.clone(), thing.bounds())).collect());
     let (forces, mut hits) = ((Gravity::EARTH, Drag {}), 0);
     // Others choose a step, or come to a solution, for all together.
-    let methods = Method::ALL.iter().filter(|method| method.is_local());
+    let methods = Method::ALL.iter().filter(Integrator::is_local);
     for (trial, method) in methods.enumerate() {
         for (i, stranger) in strangers().iter().enumerate() {
             let frames = [24, 60, 144][(trial + i) % 3];
