@@ -40,7 +40,6 @@ mod hash;
 mod kd;
 mod listing;
 mod lists;
-mod making;
 mod near;
 mod nearby;
 mod nearest;
@@ -57,8 +56,6 @@ mod split;
 mod state_index;
 mod stats;
 mod structure;
-#[cfg(feature = "rayon")]
-mod threads;
 mod tree;
 
 #[cfg(feature = "std")]
