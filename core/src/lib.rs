@@ -20,6 +20,7 @@ mod composed;
 pub mod constrain;
 mod curve;
 mod custom;
+mod division;
 pub mod draw;
 pub mod emit;
 mod events;

@@ -374,9 +374,11 @@ where
     C: Collider + ?Sized,
 {
     let [start, _] = path.during;
-    let ahead = Segment { during: [start; 2], ..Segment::new(path.x0, along(path.x0, path.v0, dt)) };
+    let to = along(path.x0, path.v0, dt);
+    let ahead = Segment { from: path.x0, to, radius: 0.0, during: [start; 2] };
     let hits = [walls.first_hit(&ahead), sinks.and_then(|sinks| sinks.first_hit(&ahead))];
-    let (step, far) = (ahead.step(), length(ahead.step()));
+    let step = ahead.step();
+    let far = length(step);
     let near = |hit: &&Hit| {
         let off_surface = -dot(step, hit.normal) * hit.time <= 2.0 * hit.slack;
         // A graze farther away is no birth on the surface.

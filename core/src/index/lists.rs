@@ -1,9 +1,11 @@
 //! Lists of neighbours that last until somebody has gone half their skin (Verlet, "Computer 'Experiments' on Classical
 //! Fluids", Phys. Rev. 159, 1967).
 
+use super::making::{Making, NO_POINT, Parts};
 use super::nearby::{NOBODY, Nearby};
 use super::sorted::Entry;
 use super::{Room, SpatialIndex, between, wrapped_in};
+use crate::division::Division;
 use crate::lanes::{self, Eight, Kernel, LANES};
 use crate::math::{largest, max, sqrt};
 use crate::rows::farthest;
@@ -13,16 +15,14 @@ use glam::Vec3;
 
 /// Words of a point's own: where its list begins and ends, where it was when the lists were made, where it is, and its row.
 const OWN: usize = 9;
-/// The number of no point.
-const NO_POINT: u32 = u32::MAX;
 /// Lists whose entries are fetched together, and room for these.
 const BATCH: usize = 16;
 const ROOM: usize = 1024;
-/// Points that are worth a thread's while.
+/// Points that it is worth a thread's while to follow.
 #[cfg(feature = "rayon")]
-const SHARE: usize = 2048;
+const FOLLOWED: usize = 4096;
 /// Steps that go by without lists after these have been of no use.
-const PAUSE: u32 = 16;
+const PAUSE: u8 = 16;
 /// Within what the squares of coordinates and of radii are numbers \[m\].
 const TAME: Range<f32> = 1e-15..1e15;
 
@@ -39,8 +39,10 @@ pub(crate) struct Listed {
     /// Words that were lent for them: others are not theirs.
     words: usize,
     /// How often they have been of use, and how many more times there are to be none.
-    uses: u32,
-    pause: u32,
+    uses: u16,
+    pause: u8,
+    /// The parts of the rows whose lists follow each other; none before there are lists, so that an empty system is nothing but zeros.
+    parts: u8,
 }
 
 /// The memory of lists, and what is known of them.
@@ -55,10 +57,13 @@ pub(crate) struct ListMemory<'a> {
     room: Option<&'a Room>,
 }
 
-/// Lists, for reading. Points are numbered anew, in the order of the index: what is near in space is near in memory.
+/// Lists, for reading. Points are numbered anew, in the order of the index: what is near in space is near in memory. Where threads share
+/// the rows, the points of one's share come before those of the next.
 #[derive(Clone, Copy)]
 pub(crate) struct Lists<'a> {
     reach: f32,
+    /// The shares: since all rows have a number, those of a share have the numbers that are its rows.
+    division: Division,
     /// Where among the entries each point's list begins and ends.
     spans: &'a [[u32; 2]],
     /// Where they are, and their rows.
@@ -67,18 +72,10 @@ pub(crate) struct Lists<'a> {
     entries: &'a [u32],
 }
 
-/// The same, in the making.
-struct Parts<'a> {
-    spans: &'a mut [[u32; 2]],
-    made: &'a mut [Vec3],
-    places: &'a mut [Entry],
-    entries: &'a mut [u32],
-}
-
 impl Listed {
     /// None.
     pub(crate) const NONE: Self =
-        Self { points: 0, reach: 0.0, max_travel: 0.0, changes: 0, words: 0, uses: 0, pause: 0 };
+        Self { points: 0, reach: 0.0, max_travel: 0.0, changes: 0, words: 0, uses: 0, pause: 0, parts: 0 };
 }
 
 impl Lists<'_> {
@@ -114,21 +111,31 @@ impl Lists<'_> {
         array::from_fn(place_of)
     }
 
+    /// The numbers among which those of some rows are.
+    fn numbers_of(&self, rows: &Range<usize>) -> Range<usize> {
+        let starts = |part: &usize| self.division.start(*part);
+        let first = (1..self.division.parts()).rev().find(|part| starts(part) <= rows.start).unwrap_or(0);
+        let last = (first + 1..self.division.parts()).find(|part| starts(part) >= rows.end);
+        starts(&first)..starts(&last.unwrap_or(self.division.parts()))
+    }
+
     /// The entries of the lists of some points, and the number of the first: those of `rows` are fetched from memory all at once, if there is room
     /// for them, which takes less than to wait for each list in turn.
     fn fetched<'r>(
         &'r self,
         (spans, places): (&[[u32; 2]], &[Entry]),
-        rows: &Range<usize>,
+        (rows, are_many): (&Range<usize>, bool),
         room: &'r mut [u32; ROOM],
     ) -> (&'r [u32], usize) {
         let [start, end] = match spans {
             [[start, end]] | [[start, _], .., [_, end]] => [*start as usize, *end as usize],
             [] => [0; 2],
         };
-        match self.entries.get(start..end).and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
+        // Who is in no index has no list; if he is the last, these do not end with his.
+        let entries = self.entries.get(start..end).filter(|entries| !entries.is_empty());
+        match entries.and_then(|entries| room.get_mut(..entries.len()).zip(Some(entries))) {
             Some((front, entries)) => {
-                if 3 * rows.len() >= self.places.len() {
+                if are_many {
                     front.copy_from_slice(entries);
                     return (room, start);
                 }
@@ -163,8 +170,12 @@ impl Kernel for Walk<'_> {
         let Self { lists, rows, reach, room, visit } = self;
         let (mut nearby, mut fetched) = (Nearby::NOBODY, [0; ROOM]);
         let within = (reach, room.map(|room| room.side_by_side(like)));
-        for (spans, places) in lists.spans.chunks(BATCH).zip(lists.places.chunks(BATCH)) {
-            let (entries, first) = lists.fetched((spans, places), &rows, &mut fetched);
+        let numbers = lists.numbers_of(&rows);
+        let are_many = 3 * rows.len() >= numbers.len();
+        let (spans, places) =
+            (lists.spans.get(numbers.clone()).unwrap_or_default(), lists.places.get(numbers).unwrap_or_default());
+        for (spans, places) in spans.chunks(BATCH).zip(places.chunks(BATCH)) {
+            let (entries, first) = lists.fetched((spans, places), (&rows, are_many), &mut fetched);
             for (span, place) in spans.iter().zip(places) {
                 let (row, [start, end]) = (place.row as usize, span.map(|at| (at as usize).wrapping_sub(first)));
                 if rows.contains(&row) {
@@ -232,119 +243,76 @@ impl<'a> ListMemory<'a> {
         points: &[Vec3],
         [reach, skin]: [f32; 2],
     ) -> Option<Lists<'_>> {
-        let Parts { spans, made, places, entries } = parts(self.words, points.len());
-        let order = index.order();
-        // Whoever is in no index is watched as well: it may come near others.
-        let absent = (0..).zip(points).filter(|(_, point)| !point.is_finite()).map(|(row, _)| row);
-        let mut count = 0;
-        for ((made, place), row) in made.iter_mut().zip(places).zip(order.iter().copied().chain(absent)) {
-            *made = wrapped_in(self.room, *points.get(row as usize)?);
-            *place = Entry { x: made.to_array(), row };
-            count += 1;
-        }
-        spans.fill([0; 2]);
-        let making = Making { index, radius: reach + skin + self.room.map_or(0.0, Room::slack) };
-        let fits = count == points.len() && making.fill(0..order.len().min(count), spans, entries);
+        let radius = reach + skin + self.room.map_or(0.0, Room::slack);
+        let making = Making { index, points, radius, room: self.room };
+        let made = making.make(&mut parts(self.words, points.len()));
         // Not again as soon, if there is no room.
-        self.listed.pause = if fits { 0 } else { PAUSE };
-        if !fits {
-            return None;
-        }
-        let (changes, words, uses, pause) = (self.changes, self.words.len(), 1, 0);
+        self.listed.pause = if made.is_some() { 0 } else { PAUSE };
+        let (parts, changes, words, uses, pause) = (made? as u8, self.changes, self.words.len(), 1, 0);
         // Half of the skin each, less what rounding may come to.
         let size = max(farthest(points), self.room.map_or(0.0, |room| largest(room.sides())));
         let max_travel = 0.499 * skin - 4.0 * f32::EPSILON * size;
-        *self.listed = Listed { points: points.len() as u32, reach, max_travel, changes, words, uses, pause };
+        *self.listed = Listed { points: points.len() as u32, reach, max_travel, changes, words, uses, pause, parts };
         Some(self.read())
     }
 
     fn read(&mut self) -> Lists<'_> {
-        let Listed { points, reach, .. } = *self.listed;
+        let Listed { points, reach, parts: shares, .. } = *self.listed;
         let Parts { spans, places, entries, .. } = parts(self.words, points as usize);
-        Lists { reach, spans, places, entries }
+        let division = Division::new(points as usize, shares as usize);
+        Lists { reach, division, spans, places, entries }
     }
 
     /// Takes up where all are, and says whether nobody has gone farther than they may.
     fn follow(&mut self, points: &[Vec3], max_travel: f32) -> bool {
-        let square = max_travel * max_travel;
         let Parts { made, places, .. } = parts(self.words, points.len());
-        let mut any = 0;
-        for (place, made) in places.iter_mut().zip(made) {
-            let at = wrapped_in(self.room, points[place.row as usize]);
-            place.x = at.to_array();
-            let d = between(self.room, *made, at);
-            any |= u32::from(!(d.x * d.x + d.y * d.y + d.z * d.z <= square));
-        }
-        any == 0
+        Following { points, room: self.room, square: max_travel * max_travel }.all(places, made)
     }
 }
 
-/// How lists are made.
+/// How it is followed where points are.
 #[derive(Clone, Copy)]
-struct Making<'a> {
-    index: &'a dyn SpatialIndex,
-    radius: f32,
+struct Following<'a> {
+    points: &'a [Vec3],
+    room: Option<&'a Room>,
+    /// The square of the way that they may have gone since lists were made.
+    square: f32,
 }
 
-impl Making<'_> {
-    /// Fills in the lists of some points; false if there is no room.
-    fn fill(&self, points: Range<usize>, spans: &mut [[u32; 2]], entries: &mut [u32]) -> bool {
+impl Following<'_> {
+    /// Takes up where points are, and says whether none has gone farther than it may; with the feature `rayon` on all threads of a pool.
+    fn all(&self, places: &mut [Entry], made: &[Vec3]) -> bool {
         #[cfg(feature = "rayon")]
-        if rayon::current_thread_index().is_some()
-            && self.fill_side_by_side(points.clone(), spans, (0, &mut *entries), rayon::current_num_threads())
-        {
-            return true;
-        }
-        self.fill_one_by_one(points, spans, (0, entries))
+        return self.side_by_side(places, made, Division::among_threads(places.len(), FOLLOWED).parts());
+        #[cfg(not(feature = "rayon"))]
+        return self.one_by_one(places, made);
     }
 
-    /// The same by so many threads, each with its share of the points and of the room.
+    /// The same by so many threads.
     #[cfg(feature = "rayon")]
-    fn fill_side_by_side(
-        &self,
-        points: Range<usize>,
-        spans: &mut [[u32; 2]],
-        (first, entries): (usize, &mut [u32]),
-        threads: usize,
-    ) -> bool {
-        let parts = threads.min(points.len() / SHARE);
-        if parts < 2 {
-            return self.fill_one_by_one(points, spans, (first, entries));
+    fn side_by_side(&self, places: &mut [Entry], made: &[Vec3], threads: usize) -> bool {
+        if threads < 2 {
+            return self.one_by_one(places, made);
         }
-        let of_front = |whole: usize| whole / parts * (parts / 2);
-        let (len, room) = (of_front(points.len()), of_front(entries.len()));
-        let (front, back) = spans.split_at_mut(len);
-        let (front_room, back_room) = entries.split_at_mut(room);
-        let middle = points.start + len;
+        let len = Division::new(places.len(), threads).start(threads / 2);
+        let ((front, back), made) = (places.split_at_mut(len), made.split_at(len));
         let (front, back) = rayon::join(
-            || self.fill_side_by_side(points.start..middle, front, (first, front_room), parts / 2),
-            || self.fill_side_by_side(middle..points.end, back, (first + room, back_room), parts - parts / 2),
+            || self.side_by_side(front, made.0, threads / 2),
+            || self.side_by_side(back, made.1, threads - threads / 2),
         );
         front && back
     }
 
-    /// The same by one thread. The entries are those from `first` on.
-    fn fill_one_by_one(
-        &self,
-        points: Range<usize>,
-        spans: &mut [[u32; 2]],
-        (first, entries): (usize, &mut [u32]),
-    ) -> bool {
-        let (mut next, start, mut len, mut fits) = (0, points.start, 0, true);
-        let all = self.index.in_order(points, self.radius, &mut |point, others| {
-            let end = len + others.len();
-            let place = point.wrapping_sub(start);
-            match spans.get_mut(place).zip(entries.get_mut(len..end)) {
-                Some((span, room)) if place >= next => {
-                    next = place + 1;
-                    *span = [first + len, first + end].map(|at| at as u32);
-                    room.copy_from_slice(others);
-                    len = end;
-                }
-                _ => fits = false,
-            }
-        });
-        all && fits
+    /// The same by one thread.
+    fn one_by_one(&self, places: &mut [Entry], made: &[Vec3]) -> bool {
+        let mut any = 0;
+        for (place, made) in places.iter_mut().zip(made) {
+            let at = wrapped_in(self.room, self.points[place.row as usize]);
+            place.x = at.to_array();
+            let d = between(self.room, *made, at);
+            any |= u32::from(!(d.x * d.x + d.y * d.y + d.z * d.z <= self.square));
+        }
+        any == 0
     }
 }
 

@@ -40,6 +40,7 @@ mod hash;
 mod kd;
 mod listing;
 mod lists;
+mod making;
 mod near;
 mod nearby;
 mod nearest;
@@ -56,6 +57,8 @@ mod split;
 mod state_index;
 mod stats;
 mod structure;
+#[cfg(feature = "rayon")]
+mod threads;
 mod tree;
 
 #[cfg(feature = "std")]

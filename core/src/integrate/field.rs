@@ -1,6 +1,8 @@
 //! Forces over masses: what a method asks for accelerations.
 
 use super::{Dynamics, Linear, Linearising, Now};
+#[cfg(feature = "rayon")]
+use crate::division::Division;
 use crate::force::{Finder, Force, SpringForce, State, Steady};
 use crate::observe::{Observer, Phase};
 use crate::rows::{BLOCKS, scale_each};
@@ -31,7 +33,7 @@ impl Dynamics for Field<'_> {
         }
         let inverse_mass = &attributes.inverse_mass[rows.clone()];
         finder.with_state(time, position, velocity, &mut |state| {
-            add_all(forces, springs, state, rows.clone(), acceleration);
+            add_side_by_side(forces, springs, state, rows.clone(), acceleration);
         });
         divide_by_masses(acceleration, inverse_mass);
     }
@@ -66,24 +68,19 @@ fn add_all(
     total: &mut [Vec3],
 ) {
     total.fill(Vec3::ZERO);
-    add_up(forces, state, rows.clone(), total);
+    forces.add_to(state, rows.clone(), total);
     if let Some(force) = springs {
-        add_up(force(&state.springs), state, rows, total);
+        force(&state.springs).add_to(state, rows, total);
     }
 }
+
+/// The same without threads.
+#[cfg(not(feature = "rayon"))]
+use add_all as add_side_by_side;
 
 /// Rows that are worth a thread's while.
 #[cfg(feature = "rayon")]
 const SHARE: usize = 2048;
-
-/// Adds the forces on some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
-fn add_up(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-    #[cfg(feature = "rayon")]
-    if rayon::current_thread_index().is_some() && can_be_divided(state) && rows.len() >= 2 * SHARE {
-        return add_up_side_by_side(forces, state, rows, total, rayon::current_num_threads());
-    }
-    forces.add_to(state, rows, total);
-}
 
 /// Tells whether a part of the rows costs no more than its share: trees divide themselves, and an index would be asked
 /// for all.
@@ -92,18 +89,29 @@ fn can_be_divided(state: &State<'_>) -> bool {
     state.near.can_be_divided() && state.mass_tree.is_none() && state.charge_tree.is_none()
 }
 
-/// The same by so many threads.
+/// The forces on some rows, on all threads of the pool that this one belongs to, each with its share of the rows.
 #[cfg(feature = "rayon")]
-fn add_up_side_by_side(forces: &dyn Force, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3], threads: usize) {
-    let parts = threads.min(rows.len() / SHARE);
+fn add_side_by_side(
+    forces: &dyn Force,
+    springs: Option<SpringForce>,
+    state: &State<'_>,
+    rows: Range<usize>,
+    total: &mut [Vec3],
+) {
+    let parts = if can_be_divided(state) { Division::among_threads(rows.len(), SHARE).parts() } else { 1 };
+    divide(&|rows, total| add_all(forces, springs, state, rows, total), rows, total, parts);
+}
+
+/// Lets so many threads fill in so many parts of the rows.
+#[cfg(feature = "rayon")]
+fn divide(fill: &(dyn Fn(Range<usize>, &mut [Vec3]) + Sync), rows: Range<usize>, total: &mut [Vec3], parts: usize) {
     if parts < 2 {
-        return forces.add_to(state, rows, total);
+        return fill(rows, total);
     }
-    let len = rows.len() * (parts / 2) / parts;
-    let (front, back) = total.split_at_mut(len);
-    let middle = rows.start + len;
+    let len = Division::new(rows.len(), parts).start(parts / 2);
+    let (middle, (front, back)) = (rows.start + len, total.split_at_mut(len));
     rayon::join(
-        || add_up_side_by_side(forces, state, rows.start..middle, front, parts / 2),
-        || add_up_side_by_side(forces, state, middle..rows.end, back, parts - parts / 2),
+        || divide(fill, rows.start..middle, front, parts / 2),
+        || divide(fill, middle..rows.end, back, parts - parts / 2),
     );
 }

@@ -126,9 +126,9 @@ fn fly(
 ) {
     let a = &mut scratch[..newborn.len()];
     field.accelerations(now, position, velocity, a);
-    for (row, &a) in newborn.zip(a.iter()) {
-        let flight = (end - born[row]).min(end - now).seconds();
-        let (x, v) = (&mut position[row], &mut velocity[row]);
+    let ends = position[newborn.clone()].iter_mut().zip(&mut velocity[newborn.clone()]);
+    for (((x, v), &born), &a) in ends.zip(&born[newborn]).zip(&*a) {
+        let flight = (end - born).min(end - now).seconds();
         *x = along(*x, along(*v, a, 0.5 * flight), flight);
         *v = along(*v, a, flight);
     }

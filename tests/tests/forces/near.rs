@@ -162,34 +162,75 @@ fn crowds_are_listed_or_not_to_the_same_bits() {
     }
 }
 
-/// Lists are made, and sums divided, by any number of threads to the same bits: where points are spread evenly, where all the near
-/// are on one thread's share, and where there is nobody.
+/// Lists are made, and sums divided, by any number of threads to the same bits, and just as often: where points are spread evenly, in no order
+/// or along an axis, so that each thread finds the near of its own rows alone; where all the near are on one thread's share; where one flies off
+/// in any share of the rows, so that lists end; and where there is hardly room for them, or a little too little.
 #[test]
 fn lists_made_in_threads_are_the_same() {
     let spread: Vec<_> = cloud(9000).into_iter().map(|at| Particle { position: at.position * 3.0, ..at }).collect();
+    let mut sorted = spread.clone();
+    sorted.sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
     let shift = |i: usize| if i < 4500 { 1.0 } else { 30.0 };
     let uneven: Vec<_> =
         spread.iter().enumerate().map(|(i, at)| Particle { position: at.position * shift(i), ..*at }).collect();
-    for (start, force) in [&spread, &uneven].into_iter().flat_map(|start| [(start, &SOFT), (start, &LONG)]) {
+    let hasty = |row: usize| {
+        let mut start = spread.clone();
+        start[row].velocity = Vec3::X * 300.0;
+        start
+    };
+    let starts = [spread.clone(), sorted, uneven, hasty(3), hasty(4499), hasty(4500), hasty(8999)];
+    let pools =
+        [1, 2, 3, 8].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads"));
+    let [one, two, three, eight] = pools.each_ref();
+    let mut listed = vec![];
+    for (start, force) in starts.iter().map(|start| (start, &SOFT)).chain([(&starts[0], &LONG), (&starts[2], &LONG)]) {
         let scene = Scene { start, forces: force, index: &Structure::Grid, ..Scene::EMPTY };
-        let run = |columns: usize| {
-            let mut system = System::with(Heap::new(Size { columns, ..scene.size() }));
+        // Some steps with so much memory, each in a pool, in turns.
+        let run = |more: usize, steps: usize, pools: &[&rayon::ThreadPool]| {
+            let mut system = System::with(Heap::new(Size { columns: scene.columns() + more, ..scene.size() }));
             system.start(&scene, 0).expect("it fits");
-            (0..5).for_each(|_| {
-                system.step(&scene, Time::from_seconds(1e-4));
-            });
-            (system.hash(), system.totals().effort)
-        };
-        let (expected, effort) = run(scene.columns());
-        assert_eq!(effort.lists, 0);
-        for columns in [scene.columns_with_lists(), scene.columns() + 200] {
-            for threads in [1, 2, 3, 8] {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-                let (hash, effort) = pool.install(|| run(columns));
-                assert_eq!(hash, expected, "{threads} threads");
-                assert!(effort.lists > 0 || columns == scene.columns_with_lists(), "{threads} threads: {effort:?}");
+            for pool in pools.iter().cycle().take(steps) {
+                pool.install(|| system.step(&scene, Time::from_seconds(1e-4)));
             }
+            let Effort { lists, streamed, all_pairs, .. } = system.totals().effort;
+            (system.hash(), [lists, streamed, all_pairs])
+        };
+        // The least memory in which lists have room.
+        let (mut too_few, mut enough) = (0, 256);
+        while enough - too_few > 1 {
+            let middle = usize::midpoint(too_few, enough);
+            *(if run(middle, 1, &[one]).1[0] > 0 { &mut enough } else { &mut too_few }) = middle;
         }
+        let (expected, _) = run(0, 6, &[one]);
+        for more in [too_few, enough, enough + enough / 8] {
+            let (hash, effort) = run(more, 6, &[one]);
+            assert_eq!(hash, expected, "{more} columns");
+            for pools in [&[two][..], &[eight], &[three, one, eight, two]] {
+                let threads: Vec<_> = pools.iter().map(|pool| pool.current_num_threads()).collect();
+                assert_eq!(run(more, 6, pools), (expected, effort), "{more} columns, {threads:?} threads");
+            }
+            listed.push(effort[0]);
+        }
+    }
+    // There have been none, lists that lasted, and lists that did not.
+    assert!([0, 1, 2].iter().all(|count| listed.contains(count)), "{listed:?}");
+}
+
+/// Who is nowhere has no list, and takes none away from others.
+#[test]
+fn the_lost_keep_nobody_from_being_listed() {
+    for count in [1, 7, 14, 15, 16, 17, 40] {
+        let mut start = cloud(count);
+        start.resize(60, Particle { position: Vec3::splat(f32::NAN), ..Particle::REST });
+        let scene = Scene { start: &start, forces: &SOFT, index: &Structure::Grid, ..Scene::EMPTY };
+        let run = |scene: &Scene<'_>, columns: usize| {
+            let mut system = System::with(Heap::new(Size { columns, ..scene.size() }));
+            system.start(scene, 0).expect("it fits");
+            system.step(scene, Time::from_seconds(1e-4));
+            (system.hash(), system.totals().effort.lists)
+        };
+        let expected = run(&Scene { index: &(), ..scene }, scene.columns()).0;
+        assert_eq!(run(&scene, scene.columns() + 500), (expected, 1), "{count} who are somewhere");
     }
 }
 
