@@ -65,6 +65,7 @@ mod storage;
 mod straight_paths;
 mod strain_limits;
 mod strands;
+mod threads;
 mod through_sides;
 mod tied_bodies;
 mod ties;

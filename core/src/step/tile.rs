@@ -259,8 +259,11 @@ impl<'a> Tile<'a> {
     pub(super) fn pass_side_by_side(mut self, scene: &Scene<'_>, h: f32) -> Report {
         let len = self.position.len();
         if len < 2 * SHARE {
-            let mut report = Report::default();
-            self.pass(scene, h, &mut report, &mut ());
+            // These rows may be fewer than a tile has, and have memory for no more than they are.
+            let (layout, mut report) = (self.layout.of_tiles(len), Report::default());
+            let mut tile: Tile<'_> = self;
+            tile.layout = &layout;
+            tile.pass(scene, h, &mut report, &mut ());
             return report;
         }
         let rows = (len / 2).next_multiple_of(TILE);
