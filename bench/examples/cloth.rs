@@ -1,10 +1,10 @@
 //! A cloth of so many cells a side falls over a ball, or hangs by two corners, with contacts or without, for so many frames of 1/60 s, by
 //! pointmass, and by rapier3d's soft bodies in the same run:
-//! `cargo run --release -p pointmass-bench --features rapier --example cloth -- [CELLS] [FRAMES] [on|off] [fall|hang] [SUBSTEPS] [STRETCH] [WHO]`.
+//! `cargo run --release -p pointmass-bench --features rapier --example cloth -- [CELLS] [FRAMES] [on|off] [fall|hang] [SUBSTEPS] [STRETCH] [WHO] [ASIDE]`.
 //!
 //! It prints the time of a frame, and the largest strain of an edge along warp or weft in the second half; of pointmass what happened and the hash as well, so that
 //! callgrind can count its instructions. STRETCH is the stiffness \[N/m\]; WHO is `ours`, `rapier`, or the numbers of iterations and the frequency of
-//! edges that rapier3d is to take, as `20,1000`.
+//! edges that rapier3d is to take, as `20,1000`; ASIDE is how far beside the ball's middle what falls begins \[m\].
 
 use pointmass::constrain::{SheetContacts, Shell, ShellParams};
 use pointmass::shape::{Plane, Sphere};
@@ -23,12 +23,13 @@ struct Case {
     hangs: bool,
     substeps: u32,
     stretch: f32,
+    aside: f32,
 }
 
 impl Case {
     /// Where it starts: over the ball, or beside it at such a height that it swings clear of the floor.
     fn corner(&self) -> Vec3 {
-        if self.hangs { Vec3::new(-0.5, 1.5, 0.5) } else { Vec3::new(-0.5, 0.32, -0.5) }
+        if self.hangs { Vec3::new(-0.5, 1.5, 0.5) } else { Vec3::new(self.aside - 0.5, 0.32, -0.5) }
     }
 }
 
@@ -43,6 +44,7 @@ fn main() {
         hangs: is(3, "hang"),
         substeps: number(4, 5),
         stretch: number(5, 500) as f32,
+        aside: arguments.get(7).and_then(|text| text.parse().ok()).unwrap_or(0.0),
     };
     match arguments.get(6).map(String::as_str) {
         None | Some("ours") => ours(&case),

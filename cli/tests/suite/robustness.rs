@@ -16,6 +16,36 @@ const CLOUD: &str = r#"{
   }]
 }"#;
 
+/// So many in memory for no more, among things.
+fn among_things(count: u32) -> String {
+    format!(
+        r#"{{
+  "run": {{"capacity": {count}, "integrator": "symplectic", "dt": 0.02, "duration": 0.8}},
+  "forces": [{{"gravity": {{"acceleration": [0, -9.8, 0]}}}}],
+  "emitters": [{{
+    "shape": {{"box": {{"min": [-1, 0.8, -1], "max": [1, 2, 1]}}}}, "burst": {{"count": {count}}}, "speed": 1, "elasticity": 0.5
+  }}],
+  "scenery": [
+    {{"shape": {{"plane": {{"point": [0, 0, 0], "normal": [0, 1, 0]}}}}}},
+    {{"shape": {{"sphere": {{"center": [0.5, 0.3, 0], "radius": 0.3}}}}}},
+    {{"shape": {{"sphere": {{"center": [0, 0.3, 0.1], "radius": 0.3}}}}}},
+    {{"shape": {{"box": {{"min": [-1, 0, -1], "max": [-0.5, 0.4, 0]}}}}}}
+  ]
+}}"#
+    )
+}
+
+#[test]
+fn many_go_past_things_on_threads() {
+    for count in [10_600, 11_000, 13_000] {
+        let folder = Folder::with("a.json", among_things(count));
+        let alone = folder.hash("a.json --threads 1");
+        for threads in [2, 3] {
+            assert_eq!(folder.hash(&format!("a.json --threads {threads}")), alone, "{count} on {threads} threads");
+        }
+    }
+}
+
 #[test]
 fn a_closed_pipe_is_no_error() {
     let folder = Folder::with("busy.scn", BUSY);
