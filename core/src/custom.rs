@@ -85,7 +85,7 @@ impl Workspace<'_> {
     }
 
     /// Gives rows from `first` on what they begin with in columns of a user's own.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn give_custom(&mut self, list: &dyn CustomList, layout: &Layout, first: usize) {
         let Some(code) = list.code() else { return };
         let rows = Newcomers { first, len: self.len(), start: self.status.start, layout };

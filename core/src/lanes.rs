@@ -3,13 +3,13 @@
 //! The number of lanes and the order in which they are added are part of every sum's definition: they decide how it
 //! rounds, and so they are the same on every target, whatever its registers hold.
 
-#[cfg(all(feature = "std", target_arch = "x86_64"))]
+#[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
 mod avx2;
-#[cfg(all(feature = "std", target_arch = "x86_64"))]
+#[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
 mod avx512;
 mod eight;
 mod hits;
-#[cfg(any(test, target_os = "none"))]
+#[cfg(any(test, one_by_one))]
 mod one;
 mod row;
 mod run;
@@ -21,7 +21,7 @@ mod width;
 
 pub(crate) use eight::{BroadKernel, Eight, Kernel, Lanes, max, min, negated, not};
 pub(crate) use hits::{COUNTS, HITS};
-#[cfg(any(test, target_os = "none"))]
+#[cfg(any(test, one_by_one))]
 pub(crate) use one::One;
 pub(crate) use row::{Row, load, mask_of, saved};
 #[cfg(test)]

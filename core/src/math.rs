@@ -53,48 +53,48 @@ fn root_by_bits(x: f32) -> f32 {
 }
 
 /// The product of two vectors, in the order x, y, z.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
     a.dot(b)
 }
 
 /// From a place so far along a direction: `place` + `direction` × `far`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn along(place: Vec3, direction: Vec3, far: f32) -> Vec3 {
     place + direction * far
 }
 
 /// From one place or velocity to another: `a` − `b`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn minus(a: Vec3, b: Vec3) -> Vec3 {
     a - b
 }
 
 /// The sum of two vectors: `a` + `b`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn plus(a: Vec3, b: Vec3) -> Vec3 {
     a + b
 }
 
 /// A vector so many times as long: `v` × `k`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn scaled(v: Vec3, k: f32) -> Vec3 {
     v * k
 }
 
 /// A vector over a number: `v` / `k`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn over(v: Vec3, k: f32) -> Vec3 {
     v / k
@@ -110,32 +110,32 @@ pub(crate) fn copied(v: Vec3) -> Vec3 {
 }
 
 /// Tells whether all coordinates of a vector are zero.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn is_zero(v: Vec3) -> bool {
     v == Vec3::ZERO
 }
 
 /// Length of a vector.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub fn length(v: Vec3) -> f32 {
     sqrt(dot(v, v))
 }
 
 /// The part of a vector that lies along a surface.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub(crate) fn aside(v: Vec3, normal: Vec3) -> Vec3 {
     v - normal * dot(v, normal)
 }
 
 /// `v` over its length; zero where it has none that an `f32` can hold.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline)]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline)]
 #[must_use]
 pub fn unit(v: Vec3) -> Vec3 {
     // Dividing by the largest coordinate first keeps the squares of tiny and huge vectors in range.
@@ -148,48 +148,48 @@ pub fn unit(v: Vec3) -> Vec3 {
 }
 
 /// The larger of two numbers, the second where they are equal: unlike `f32::max` it treats −0 alike everywhere.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// The smaller of two numbers, the second where they are equal.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 /// `x` held in `[low, high]`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
     min(max(x, low), high)
 }
 
 /// The lesser of each coordinate, as `min`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub fn low(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z))
 }
 
 /// The greater of each coordinate, as `max`.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline(always))]
 #[must_use]
 pub fn high(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z))
 }
 
 /// The largest coordinate's magnitude.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline)]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline)]
 #[must_use]
 pub fn largest(v: Vec3) -> f32 {
     max(max(v.x.abs(), v.y.abs()), v.z.abs())
@@ -208,7 +208,7 @@ pub(crate) fn power_to_one(length: f32) -> f32 {
 /// for numbers so wide take kilobytes.
 #[must_use]
 pub(crate) const fn divide(number: u128, by: u64) -> (u64, u64) {
-    if cfg!(target_os = "none") {
+    if cfg!(one_by_one) {
         long_division(number, by)
     } else if by == 0 {
         (0, 0)

@@ -69,7 +69,7 @@ impl Effort {
     };
 
     /// Counts what it took to find forces.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn found(&mut self, more: &Finding) {
         self.evaluations += u64::from(more.evaluations);
         self.lists += u64::from(more.lists);
@@ -205,7 +205,7 @@ impl Died {
     }
 
     /// From whatever cause.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     #[must_use]
     pub const fn total(&self) -> u64 {
         self.lifetime + self.sink + self.density + self.chance + self.other + self.nonfinite

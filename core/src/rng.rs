@@ -43,7 +43,7 @@ impl Stream {
     /// The same of four places, side by side.
     #[inline]
     pub(crate) fn units_of(&self, places: [u32; 4]) -> [[f32; 2]; 4] {
-        if cfg!(target_os = "none") {
+        if cfg!(one_by_one) {
             return places.map(|place| self.units(place));
         }
         let turned = |words: u32x4, turn| (words << turn) | (words >> (u32::BITS - turn));
@@ -138,7 +138,7 @@ fn rounds<T: Copy + Add<Output = T> + BitXor<Output = T>>(
     turned: impl Fn(T, u32) -> T,
 ) -> [T; 2] {
     let mut state = ([x + key[0], y + key[1]], [key[0], key[1], key[0] ^ key[1] ^ all(0x1BD1_1BDA)]);
-    if cfg!(target_os = "none") {
+    if cfg!(one_by_one) {
         (0..5).for_each(|group| state = four(state, group, &all, &turned));
     } else {
         // Written out, so that vectors turn by constants, which takes half the instructions.

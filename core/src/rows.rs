@@ -12,7 +12,7 @@ use crate::math::{along, max, scaled};
 use glam::Vec3;
 
 /// True if there may be vectors: chips without an operating system are spared the code, and work number by number.
-pub(crate) const BLOCKS: bool = !cfg!(target_os = "none");
+pub(crate) const BLOCKS: bool = !cfg!(one_by_one);
 
 /// `out` = `base` + `h` × `rate`, row by row.
 #[inline]
@@ -29,8 +29,8 @@ pub(crate) fn advance_by(out: &mut [Vec3], base: &[Vec3], h: f32, rate: &[Vec3])
 }
 
 /// `sum` += `h` × `rate`, row by row.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline)]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline)]
 pub(crate) fn add_scaled(sum: &mut [Vec3], h: f32, rate: &[Vec3]) {
     let (sum, rate) = (flat_mut(sum), flat(rate));
     widest(
@@ -175,8 +175,8 @@ pub(crate) fn farthest_of_finite(column: &[Vec3], other: &[Vec3]) -> (f32, bool)
 
 /// Tells whether every number is finite. The exponent of those that are not is all ones, so that one more carries into
 /// the sign.
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline)]
+#[cfg_attr(one_by_one, inline(never))]
+#[cfg_attr(not(one_by_one), inline)]
 pub(crate) fn are_finite(column: &[Vec3]) -> bool {
     let carried = |any: u32, x: &f32| any | ((x.to_bits() & 0x7FFF_FFFF) + 0x0080_0000);
     flat(column).iter().fold(0, carried) >> 31 == 0

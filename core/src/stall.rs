@@ -61,7 +61,7 @@ fn may_be_swallowed(x: f32, v: f32, h: f32) -> bool {
 }
 
 /// The same of what is somewhere, in steps that take time.
-#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(one_by_one, inline(never))]
 fn is_swallowed(x: f32, v: f32, h: f32) -> bool {
     let is_motion = v.abs() > f32::MIN_POSITIVE && v.abs() < f32::INFINITY && x.abs() < f32::INFINITY;
     may_be_swallowed(x, v, h) && h > 0.0 && is_motion

@@ -62,7 +62,7 @@ impl Time {
     }
 
     /// In seconds, rounded to an `f32`.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     #[must_use]
     pub const fn seconds(self) -> f32 {
         self.0 as f32 / TICKS_PER_SECOND
@@ -106,7 +106,7 @@ impl Time {
 
 impl Add for Time {
     type Output = Self;
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn add(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
     }
@@ -114,7 +114,7 @@ impl Add for Time {
 
 impl Sub for Time {
     type Output = Self;
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn sub(self, other: Self) -> Self {
         Self(self.0.saturating_sub(other.0))
     }

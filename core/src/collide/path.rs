@@ -34,8 +34,8 @@ pub(super) struct Cubic {
 
 impl Cubic {
     /// The point at a fraction of the time: Hermite's cubic, which is the exact parabola under constant acceleration.
-    #[cfg_attr(target_os = "none", inline(never))]
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(one_by_one, inline(never))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn at(&self, s: f32) -> Vec3 {
         let [c1, c2, c3] = self.coefficients;
         along(self.start, along(c1, along(c2, c3, s), s), s)
@@ -58,14 +58,14 @@ impl Cubic {
 
 impl Path {
     /// How long it takes \[s\].
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn duration(&self) -> f32 {
         let [start, end] = self.during;
         (end - start).seconds()
     }
 
     /// The instant at a fraction of the time.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn instant(&self, s: f32) -> Time {
         between(self.during, s)
     }
@@ -74,11 +74,11 @@ impl Path {
         // A term that is not finite makes a sum that is not; a sum may be so without one. Chips are spared the sum.
         let sum_is_finite = || (self.x0 + self.v0 + self.x1 + self.v1).is_finite();
         let ends = || [&self.x0, &self.v0, &self.x1, &self.v1].into_iter().all(|end| are_finite(from_ref(end)));
-        !cfg!(target_os = "none") && sum_is_finite() || ends()
+        !cfg!(one_by_one) && sum_is_finite() || ends()
     }
 
     /// A box that holds a ball on it: that of its Bézier control points.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn hull(&self, radius: f32) -> Aabb {
         let third = self.duration() * (1.0 / 3.0);
         let (a, b) = (along(self.x0, self.v0, third), along(self.x1, self.v1, -third));
@@ -87,8 +87,8 @@ impl Path {
     }
 
     /// It as a polynomial.
-    #[cfg_attr(target_os = "none", inline(never))]
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(one_by_one, inline(never))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn cubic(&self) -> Cubic {
         let (duration, excess) = (self.duration(), self.excess());
         let bend = along(scaled(minus(self.v1, self.v0), 0.5 * duration), excess, 3.0);
@@ -102,7 +102,7 @@ impl Path {
 
     /// The velocity at a fraction of the time \[m/s\]. Where the cubic bends as the ends' velocities do not say, as with the
     /// two Euler methods, it is theirs in between: what a hit takes in before and after adds up to the step's.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn velocity(&self, s: f32) -> Vec3 {
         let (steady, excess) = (along(self.v0, minus(self.v1, self.v0), s), self.excess());
         if self.is_smooth(excess) { along(steady, excess, 6.0 * s * (1.0 - s) / self.duration()) } else { steady }
@@ -110,7 +110,7 @@ impl Path {
 
     /// How much farther it leads than a parabola with the velocities of its ends. What is within the rounding of the ends is
     /// nothing: as a velocity it would be noise.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn excess(&self) -> Vec3 {
         let excess = along(minus(self.x1, self.x0), plus(self.v0, self.v1), -0.5 * self.duration());
         let rounding = scaled(plus(self.x0.abs(), self.x1.abs()), f32::EPSILON);
@@ -143,7 +143,7 @@ impl Path {
     }
 
     /// The way on from a place and a velocity under a steady acceleration, until it ends.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn onward(x0: Vec3, v0: Vec3, acceleration: Vec3, during: [Time; 2]) -> Self {
         let time = (during[1] - during[0]).seconds();
         let (x1, v1) = (along(x0, along(v0, acceleration, 0.5 * time), time), along(v0, acceleration, time));
@@ -169,14 +169,14 @@ impl Path {
     }
 
     /// Its mean acceleration \[m/s²\].
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn acceleration(&self) -> Vec3 {
         let duration = self.duration();
         if duration > 0.0 { over(minus(self.v1, self.v0), duration) } else { Vec3::ZERO }
     }
 
     /// The straight line between two fractions of its time, for a ball; `cubic` is it as a polynomial.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn piece(&self, cubic: &Cubic, [from, to]: [f32; 2], radius: f32) -> Segment {
         let end = |s: f32| match s {
             0.0 => (self.x0, self.during[0]),
@@ -189,7 +189,7 @@ impl Path {
 }
 
 /// The instant at a fraction of a span.
-#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(one_by_one, inline(never))]
 pub(super) fn between([start, end]: [Time; 2], s: f32) -> Time {
     // A span is so short that single precision leaves less than a nanosecond; the cast saturates.
     let ticks = ((end - start).ticks() as f32 * s) as u64;

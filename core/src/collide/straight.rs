@@ -39,7 +39,7 @@ pub(super) fn follow(tile: &mut Tile<'_>, report: &mut Report, observer: &mut dy
 }
 
 /// Takes a row to where it comes to.
-#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(one_by_one, inline(never))]
 fn pass(tile: &mut Tile<'_>, past: Past<'_>, row: usize, report: &mut Report, observer: &mut dyn Observer) {
     let mut path = tile.path(past, row);
     if !path.is_finite() {
@@ -90,7 +90,7 @@ impl Straight<'_, '_> {
 
     /// The way on from a hit under the mean acceleration of the path so far. Whom that would bring back to the surface within a part of the
     /// step rests on it: then the surface bears what presses, and friction holds what drives along it.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn rebound(&mut self, path: &mut Path, way: &Segment, hit: &Hit) {
         let Self { tile, row, .. } = *self;
         let (lives, normal) = (&tile.attributes.lives, hit.normal);

@@ -105,7 +105,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 
     /// A newborn's path without the surface of its source.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn let_go(&self, path: &Path) -> Path {
         let mut path = *path;
         let_go(self.walls, self.sinks, &mut path, self.dt);
@@ -114,7 +114,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
 
     /// A path whose end lags behind its velocities, as these tell it where it begins on a surface: it would go on freely
     /// past what it is pressed onto, and meet that only a step later.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn pressed_on(&mut self, path: &Path) -> Path {
         let pressed = path.caught_up();
         match self.first_meeting(&pressed) {
@@ -148,13 +148,13 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 
     /// By how much a method leads beyond a parabola along a surface that a path meets, if there are springs.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn lead(&self, path: &Path, time: f32, normal: Vec3) -> Option<Lead> {
         self.obstacles.lead.and_then(|code| (code.of)(path, time, normal))
     }
 
     /// Leads the way on from a surface farther, as the method does: one that flies, or slides so.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn lead_on(&self, lead: &Option<Lead>, onward: &mut Path, slides: Option<&[Vec3; 4]>) {
         if let (Some(lead), Some(code)) = (lead, self.obstacles.lead) {
             onward.x1 = (code.beyond)(lead, onward, slides);

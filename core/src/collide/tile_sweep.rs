@@ -21,7 +21,7 @@ use crate::time::Time;
 use glam::Vec3;
 
 /// True where what faces one flat wall alone is followed by code of its own: chips are spared that.
-const SHORT_WAY: bool = !cfg!(target_os = "none");
+const SHORT_WAY: bool = !cfg!(one_by_one);
 
 /// Everything.
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };

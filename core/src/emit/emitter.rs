@@ -274,7 +274,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
     }
 
     /// A particle whose attributes are the least that a birth may have, for zero, or for one the greatest.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn extreme(&self, u: f32) -> Particle {
         let mut tint = self.color.unwrap_or(WHITE);
         for (channel, half_width) in tint.iter_mut().zip(self.color_half_width) {

@@ -105,7 +105,7 @@ pub struct Births<'a> {
 const PLACES: [u32; 4] = [0, 1, 2, 4];
 
 /// Births that are drawn at once, where there are vectors.
-const AT_ONCE: usize = if cfg!(target_os = "none") { 0 } else { 8 };
+const AT_ONCE: usize = if cfg!(one_by_one) { 0 } else { 8 };
 
 /// The random numbers of a birth, with the pairs at [`PLACES`].
 type Drawn = (Stream, [[f32; 2]; 4]);
@@ -184,7 +184,7 @@ impl Births<'_> {
     }
 
     /// The same of one that is like another but for how it begins.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn give_like(
         &mut self,
         number: usize,
@@ -295,7 +295,7 @@ impl Births<'_> {
     }
 
     /// Counts a birth that finds no room.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn miss(&mut self, at: Time) {
         self.report.refused = self.report.refused.saturating_add(1);
         self.observer.refused(1, at);

@@ -38,13 +38,13 @@ impl Varied {
     }
 
     /// Uniform from mean − half_width to mean + half_width, as a number uniform in [0, 1) picks.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn pick(self, u: f32) -> f32 {
         if self.half_width == 0.0 { self.mean } else { self.mean + self.half_width * (2.0 * u - 1.0) }
     }
 
     /// The same by one of a pair of random numbers, which are drawn only if there is a half-width.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn draw(self, random: Stream, place: u32, which: usize) -> f32 {
         if self.half_width == 0.0 { self.mean } else { self.pick(random.units(place)[which]) }
     }

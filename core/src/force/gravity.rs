@@ -38,7 +38,7 @@ impl Force for Gravity {
         true
     }
 
-    #[cfg(not(target_os = "none"))]
+    #[cfg(not(one_by_one))]
     fn steady(&self) -> Option<super::Steady> {
         Some(super::Steady { acceleration: Some(self.acceleration), drags: false })
     }

@@ -25,7 +25,7 @@ pub(super) fn field(
 
 /// Particles for which the sums go on side by side, so that each block of sources is turned into lanes once for all. Their
 /// number changes no sum: one on a chip, whose stack is small, many on a host.
-const PLACES: usize = if cfg!(target_os = "none") { 1 } else { 32 };
+const PLACES: usize = if cfg!(one_by_one) { 1 } else { 32 };
 
 /// Visits the rows with Σ w d⃗ / (d² + `square`)^{3/2} over all others, summed pair by pair.
 ///

@@ -175,7 +175,7 @@ struct Sums<'t> {
 }
 
 /// Sums that wait at the most.
-const WAITING: usize = if cfg!(target_os = "none") { 1 } else { 64 };
+const WAITING: usize = if cfg!(one_by_one) { 1 } else { 64 };
 
 impl<'t> Sums<'t> {
     /// None yet, for the totals of rows from `first` on.

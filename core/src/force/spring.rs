@@ -119,7 +119,7 @@ pub struct Held<'a> {
 
 impl<'a> Columns<'a> {
     /// Springs, and where their ends are now.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn springs(&self, springs: &'a [Spring], status: &Status) -> Springs<'a> {
         let Columns { serial, row_of, last_spring, incident, .. } = *self;
         Springs { springs, start: status.start, serial: &serial[..status.len], row_of, last_spring, incident }

@@ -89,7 +89,7 @@ impl<'a> State<'a> {
     }
 
     /// The same with other columns of a user's own.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn moved_with<'s>(
         &self,
         custom: CustomColumns<'s>,

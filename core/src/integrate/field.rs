@@ -59,7 +59,7 @@ fn divide_by_masses(forces: &mut [Vec3], inverse_mass: &[f32]) {
 }
 
 /// The forces on some rows, those of springs behind the others.
-#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(one_by_one, inline(never))]
 fn add_all(
     forces: &dyn Force,
     springs: Option<SpringForce>,

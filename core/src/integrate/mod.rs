@@ -71,7 +71,7 @@ pub struct Linear<'a> {
 
 impl<'a> Linear<'a> {
     /// Those about a state.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn about(state: &State<'a>, forces: [&'a dyn Force; 2], inverse_mass: &'a [f32]) -> Self {
         Self { forces, state: *state, inverse_mass }
     }

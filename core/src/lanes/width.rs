@@ -11,4 +11,4 @@ pub(crate) const PARTS: usize = 2;
 pub(crate) const NOWHERE: f32 = 1e19;
 
 /// The number that goes side by side where eight may: on chips, where lanes would be taken one after the other, one.
-pub(crate) const ABREAST: usize = if cfg!(target_os = "none") { 1 } else { LANES };
+pub(crate) const ABREAST: usize = if cfg!(one_by_one) { 1 } else { LANES };

@@ -13,7 +13,7 @@ pub enum Column<'a, T> {
 
 impl<'a, T: Copy + PartialEq> Column<'a, T> {
     /// The same column, borrowed again.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn again(&mut self) -> Column<'_, T> {
         match self {
             Self::Own(rows) => Column::Own(rows),
@@ -35,7 +35,7 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
     }
 
     /// Gives a row its number, if that may be in it, and says whether it may.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(crate) fn put(&mut self, row: usize, value: T) -> bool {
         match self {
             Self::Own(rows) => {
@@ -48,7 +48,7 @@ impl<'a, T: Copy + PartialEq> Column<'a, T> {
     }
 
     /// Gives rows what others have, each `[from, to]`, one after the other.
-    #[cfg_attr(target_os = "none", inline(always))]
+    #[cfg_attr(one_by_one, inline(always))]
     pub(crate) fn move_rows(&mut self, moves: &[[u32; 2]]) {
         if let Self::Own(rows) = self {
             moves.iter().for_each(|[from, to]| rows[*to as usize] = rows[*from as usize]);

@@ -18,7 +18,7 @@ impl Words {
     pub const NONE: Self = Self { per_row: 0, fixed: 0 };
 
     /// For so many particles.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     #[must_use]
     pub const fn of(self, capacity: usize) -> usize {
         self.per_row.saturating_mul(capacity).saturating_add(self.fixed)
@@ -385,7 +385,7 @@ fn over(many: usize, size: usize) -> usize {
 }
 
 /// The first so many, or all that there are.
-#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(one_by_one, inline(never))]
 pub(crate) fn take<'m, T>(rest: &mut &'m mut [T], len: usize) -> &'m mut [T] {
     let all = core::mem::take(rest);
     let (first, others) = all.split_at_mut(len.min(all.len()));
@@ -394,13 +394,13 @@ pub(crate) fn take<'m, T>(rest: &mut &'m mut [T], len: usize) -> &'m mut [T] {
 }
 
 /// The first so many vectors, or all that there are.
-#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(one_by_one, inline(never))]
 pub(crate) fn take_vectors<'m>(rest: &mut &'m mut [u32], len: usize) -> &'m mut [Vec3] {
     vectors(take(rest, 3 * len))
 }
 
 /// As many whole vectors as there are in so many words.
-#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(one_by_one, inline(never))]
 fn vectors(words: &mut [u32]) -> &mut [Vec3] {
     let whole = words.len() - words.len() % 3;
     bytemuck::cast_slice_mut(&mut words[..whole])

@@ -99,13 +99,13 @@ macro_rules! storage {
 
         impl Slices<'_> {
             /// The number of particles that fit.
-            #[cfg_attr(target_os = "none", inline(never))]
+            #[cfg_attr(one_by_one, inline(never))]
             pub(crate) fn capacity(&self) -> usize {
                 [$(self.$p.len(),)+ $(self.$c.len()),+].into_iter().fold(usize::MAX, usize::min)
             }
 
             /// Moves rows onto others, each `[from, to]`, one after the other; all exist.
-            #[cfg_attr(target_os = "none", inline(always))]
+            #[cfg_attr(one_by_one, inline(always))]
             pub(crate) fn move_rows(&mut self, moves: &[[u32; 2]]) {
                 // Column by column, so that those in memory that is far away are waited for together.
                 storage!(@move self, moves, $($p)+);
@@ -116,7 +116,7 @@ macro_rules! storage {
             ///
             /// # Errors
             /// The first of them that the particle has otherwise than this memory holds it for all.
-            #[cfg_attr(target_os = "none", inline(never))]
+            #[cfg_attr(one_by_one, inline(never))]
             pub(crate) fn give(&mut self, row: usize, particle: &Particle) -> Result<(), Attribute> {
                 $(storage!(@unless_by_number $c {
                     let $particle = particle;
@@ -360,7 +360,7 @@ impl<T: Storage + ?Sized> Storage for alloc::boxed::Box<T> {
 
 impl Size {
     /// That of memory for so many particles, by the lengths of its other columns.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn of(particles: usize, [emitters, incident, work, kept]: [usize; 4]) -> Self {
         let share = |words: usize| words.checked_div(particles).unwrap_or(usize::MAX);
         Self { particles, emitters, springs: incident / 2, columns: share(work), kept: share(kept) }

@@ -12,7 +12,7 @@ use crate::time::Time;
 use glam::Vec3;
 
 /// True if there may be a cache that a few rows fit into: chips without an operating system are spared the code.
-pub(crate) const TILED: bool = !cfg!(target_os = "none");
+pub(crate) const TILED: bool = !cfg!(one_by_one);
 
 /// The number, instead of an emitter's, of those that are put in without one.
 const NO_EMITTER: u32 = u32::MAX;
@@ -148,7 +148,7 @@ impl Workspace<'_> {
 
     /// Puts a particle into the next row that is like another but for how it begins; `key` is what its random numbers are drawn by as long
     /// as it lives.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn spawn(&mut self, like: &Particle, start: &Start, key: u32) -> Result<Id, Full> {
         if self.is_full() {
             return Err(Full);

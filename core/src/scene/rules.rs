@@ -208,7 +208,7 @@ impl Scene<'_> {
 
 impl<'a> Scene<'a> {
     /// What shows of it in the state of its particles.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn backdrop(&self) -> Backdrop<'a> {
         let Self { springs, materials, custom, index, .. } = *self;
         Backdrop { springs: springs.list(), materials, custom, room: index.room() }

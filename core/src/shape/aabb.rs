@@ -36,8 +36,8 @@ impl Aabb {
     }
 
     /// The box that reaches farther by so much on all sides \[m\].
-    #[cfg_attr(target_os = "none", inline(never))]
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(one_by_one, inline(never))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(crate) fn grown(self, by: f32) -> Self {
         Self { min: self.min - by, max: self.max + by }
     }

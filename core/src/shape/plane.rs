@@ -43,7 +43,7 @@ impl Collider for Plane {
         let side = |point: Vec3| dot(self.normal, point - self.point);
         // A ball smaller than rounding is a point. The normal is brought to unit length only for who meets it.
         // Chips are spared the code for who does not.
-        let is_point = !cfg!(target_os = "none") && !(segment.radius > segment.slack(largest(self.point)));
+        let is_point = !cfg!(one_by_one) && !(segment.radius > segment.slack(largest(self.point)));
         if is_point && passage(side(segment.from), side(segment.to)).is_none() {
             return None;
         }
@@ -62,13 +62,13 @@ impl Collider for Plane {
         !(distance > dot(self.normal.abs(), plus(half, Vec3::splat(room))))
     }
 
-    #[cfg(not(target_os = "none"))]
+    #[cfg(not(one_by_one))]
     fn facing(&self, bounds: &Aabb) -> super::Facing {
         if self.may_touch(bounds) { super::Facing::Face(self.face()) } else { super::Facing::Nothing }
     }
 
     // Chips do not ask, and the table of a plane's functions would have it linked.
-    #[cfg(not(target_os = "none"))]
+    #[cfg(not(one_by_one))]
     fn mark_near(&self, hulls: &super::Hulls, marks: &mut super::Marks) {
         hulls.near_plane(self.point, self.normal, marks);
     }
@@ -84,14 +84,14 @@ impl Mapped for Plane {
 
 impl Plane {
     /// It for many who ask.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     fn face(&self) -> Face {
         Face::new(self.point, self.normal)
     }
 }
 
 impl Collider for Face {
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let slack = segment.slack(self.size());
         let center = passed(self, segment);
@@ -106,7 +106,7 @@ impl Collider for Face {
         Some(Hit { material: self.material(), ..Hit::new(time, normal, slack) })
     }
 
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let [point, _, unit] = self.vectors();
         let distance = dot(unit, minus(center, point));
@@ -130,7 +130,7 @@ struct Passage {
 }
 
 /// When a ball first touches a face. One that overlaps it touches at once if it moves nearer, else never.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn touched(face: &Face, segment: &Segment) -> Option<Passage> {
     let [point, _, unit] = face.vectors();
     let (start, rise) = (dot(unit, minus(segment.from, point)), dot(unit, segment.step()));
@@ -141,7 +141,7 @@ fn touched(face: &Face, segment: &Segment) -> Option<Passage> {
 }
 
 /// When a path's centre meets a face.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn passed(face: &Face, segment: &Segment) -> Option<Passage> {
     let [point, normal, _] = face.vectors();
     // Which side, and when, does not depend on the normal's length.

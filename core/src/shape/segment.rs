@@ -48,15 +48,15 @@ impl Segment {
     }
 
     /// A bound on the rounding error of a distance between it and something of extent `size` around the origin.
-    #[cfg_attr(target_os = "none", inline(never))]
-    #[cfg_attr(not(target_os = "none"), inline)]
+    #[cfg_attr(one_by_one, inline(never))]
+    #[cfg_attr(not(one_by_one), inline)]
     pub(crate) fn slack(&self, size: f32) -> f32 {
         Self::slack_within(max(largest(self.from), largest(self.to)), self.radius, size)
     }
 
     /// The same of a ball that is no farther than so from the origin.
-    #[cfg_attr(target_os = "none", inline(never))]
-    #[cfg_attr(not(target_os = "none"), inline)]
+    #[cfg_attr(one_by_one, inline(never))]
+    #[cfg_attr(not(one_by_one), inline)]
     pub(super) fn slack_within(far: f32, radius: f32, size: f32) -> f32 {
         4.0 * f32::EPSILON * (far + radius + size)
     }

@@ -43,7 +43,7 @@ impl Workspace<'_> {
     }
 
     /// Tells whether a step can be made in the memory that there is.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(crate) fn fits(&self, scene: &Scene<'_>, layout: &Layout) -> bool {
         let Slices { emitter_states, incident, work, kept, .. } = &self.memory;
         let [emitters, springs] = [scene.emitters.count(), scene.springs.list().len()];
@@ -86,8 +86,8 @@ impl Workspace<'_> {
 
     /// Takes the particles in some rows out, no more than [`AT_ONCE`], from back to front; the last row fills each gap. Where there are springs,
     /// there must not be more than one.
-    #[cfg_attr(target_os = "none", inline(always))]
-    #[cfg_attr(not(target_os = "none"), inline(never))]
+    #[cfg_attr(one_by_one, inline(always))]
+    #[cfg_attr(not(one_by_one), inline(never))]
     pub(crate) fn remove(&mut self, rows: &[u32], springs: &dyn SpringList, report: &mut Report) {
         let (capacity, mut moves) = (self.capacity(), [[0; 2]; AT_ONCE]);
         for (&row, onto) in rows.iter().zip(&mut moves) {

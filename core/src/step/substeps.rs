@@ -23,7 +23,7 @@ pub(super) struct Carried<'a> {
 
 impl Scene<'_> {
     /// Its forces over the masses of rows from one on, with memory for trees, an index and lists.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn field<'f>(
         &'f self,
         attributes: &'f Attributes<'f>,

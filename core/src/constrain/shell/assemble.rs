@@ -33,7 +33,7 @@ impl Solver<'_> {
     }
 
     /// Adds to a fold's triangles how their corners hold each other by its moment, and what these do to themselves.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn add_fold(&mut self, finest: &mut Finest<'_>, bending: f32, i: usize) {
         let (Some(hinge), Some(bend), Some(&fold)) = (self.hinges.get(i), self.bends.get(i), self.folds.get(i)) else {
             return;
@@ -54,7 +54,7 @@ impl Solver<'_> {
 
     /// Adds to a hinge's triangles how their corners hold each other: on each side those of the edge, its first corner and the far one, its second and
     /// that.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn hold(&mut self, hinge: &Hinge, held: [[f32; 3]; 2]) {
         for (side, [across, first, second]) in held.into_iter().enumerate() {
             let (face, far) = (hinge.faces[side] as usize, hinge.far[side]);

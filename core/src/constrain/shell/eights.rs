@@ -7,7 +7,7 @@ use crate::lanes::{Eight, LANES};
 use glam::Vec3;
 
 /// Chips without an operating system go one by one: what is written for eight would be in their flash besides.
-pub(super) const WIDE: bool = cfg!(not(target_os = "none"));
+pub(super) const WIDE: bool = cfg!(not(one_by_one));
 
 /// One number of each of eight structs, side by side.
 macro_rules! column {

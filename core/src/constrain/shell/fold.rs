@@ -42,27 +42,27 @@ pub(super) struct Fold {
 
 /// The normals of both triangles × twice the area, the edge from the first corner to the second and the ways from there to both far
 /// corners being given.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn normals([e, f, g]: [Vec3; 3]) -> [Vec3; 2] {
     [e.cross(f), g.cross(e)]
 }
 
 /// How the angle changes for each metre that each far corner goes from the edge.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn slopes(ways: [Vec3; 3]) -> [Vec3; 2] {
     let edge = length(ways[0]);
     normals(ways).map(|normal| normal * (edge / dot(normal, normal)))
 }
 
 /// The angle of a fold, above zero where the far corners are on the side of the normals.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn fold_angle(ways: [Vec3; 3]) -> f32 {
     let [m, n] = normals(ways).map(|normal| normal / length(normal));
     angle(dot(m, n), dot(n.cross(m), ways[0]) / length(ways[0]))
 }
 
 /// The square of how fast an angle changes for each metre that the corner goes for which that is fastest.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn fastest(slope: [Vec3; 2], foot: [f32; 2]) -> f32 {
     let [a, b] = [0, 1].map(|side| {
         let (x, y) = (foot[side], 1.0 - foot[side]);
@@ -72,7 +72,7 @@ fn fastest(slope: [Vec3; 2], foot: [f32; 2]) -> f32 {
 }
 
 /// An angle, by the nearer way round.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn turn(angle: f32) -> f32 {
     if angle > PI {
         angle - TAU
@@ -105,19 +105,19 @@ impl RestFold {
     }
 
     /// Tells whether it does anything.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn acts(&self) -> bool {
         self.curvature[0] != [0.0; 3]
     }
 
     /// The square of the curvature for each radian on a side \[1/m²\].
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn steep(&self, side: usize) -> f32 {
         self.moment(side, self.curvature[side])
     }
 
     /// How it resists a change of its angle where bending stiffness is one, by the areas of its triangles.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn stiffness(&self, areas: [f32; 2]) -> f32 {
         areas[0] * self.steep(0) + areas[1] * self.steep(1)
     }
@@ -128,7 +128,7 @@ impl RestFold {
     }
 
     /// Adds the curvature that a change of the angle makes to that of both triangles.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn curve(&self, side: usize, change: f32, curvature: &mut [f32; 3]) {
         let [a, b, c] = self.curvature[side];
         curvature[0] += a * change;
@@ -137,7 +137,7 @@ impl RestFold {
     }
 
     /// The part that a triangle's curvature has in this fold's moment.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn moment(&self, side: usize, curvature: [f32; 3]) -> f32 {
         let [a, b, c] = self.curvature[side];
         a * curvature[0] + b * curvature[1] + c * curvature[2]
@@ -149,7 +149,7 @@ impl Fold {
 
     /// The fold with these ways now, along others, and as it was as the sub-step began; with its angle less that at rest, and what
     /// damping adds.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn of(bend: &RestFold, step: &Step, [now, along, before]: [[Vec3; 3]; 3]) -> (Self, f32) {
         let [e, f, g] = along;
         let (edge, slope) = (length(e), slopes(along));
@@ -163,40 +163,40 @@ impl Fold {
         if bend.acts() && this.is_finite() && open.is_finite() { (this, open) } else { (Self::NONE, 0.0) }
     }
 
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn is_finite(&self) -> bool {
         self.slope.iter().all(|slope| slope.is_finite()) && self.foot.iter().all(|foot| foot.is_finite())
     }
 
     /// The same, with a moment in it.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn with_moment(self, moment: f32) -> Self {
         Self { moment: moment.abs(), ..self }
     }
 
     /// How far the far corner of each side goes from the point of the edge beside it, where all four go so far.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn ways(&self, [a, b, c, d]: [Vec3; 4]) -> [Vec3; 2] {
         let [x, y] = self.foot;
         [c - a * (1.0 - x) - b * x, d - a * (1.0 - y) - b * y]
     }
 
     /// How the angle changes where its corners go so far.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn change(&self, corners: [Vec3; 4]) -> f32 {
         let [f, g] = self.ways(corners);
         dot(self.slope[0], f) + dot(self.slope[1], g)
     }
 
     /// The forces of a moment on its four corners, in the sense that opens it.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn forces(&self, moment: f32) -> [Vec3; 4] {
         self.spread([self.slope[0] * moment, self.slope[1] * moment])
     }
 
     /// The resistance × h² that moments turning with the triangles put up, as the tension of triangles does: an upper bound of
     /// a quarter of it.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn resist(&self, corners: [Vec3; 4]) -> [Vec3; 4] {
         let ([f, g], [m, n]) = (self.ways(corners), self.slope);
         self.spread([f * (0.25 * self.moment * dot(m, m)), g * (0.25 * self.moment * dot(n, n))])
@@ -204,7 +204,7 @@ impl Fold {
 
     /// The part of that which the corners on a side do to each other, and of what stiffness of its angle there is besides: those of the edge, the
     /// first of them and the far one, the second and that.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn held(&self, side: usize, [excess, slip]: [f32; 2]) -> [f32; 3] {
         let (x, slope) = (self.foot[side], self.slope[side]);
         let square = dot(slope, slope);
@@ -215,7 +215,7 @@ impl Fold {
     /// What the matrix of bending, which takes all normals for one and triangles for what they are at rest, may lack of its stiffness, as a share
     /// of that: its angle changes by m f + n g, and by ½ |m − n|² at the most of what f and g are alone where m and n are taken for one. The
     /// folds of a triangle act together.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn excess(&self, bend: &RestFold) -> f32 {
         let [m, n] = self.slope;
         let (a, b) = (dot(m, m), dot(n, n));
@@ -226,14 +226,14 @@ impl Fold {
     }
 
     /// The same where the point beside a far corner has gone along the edge: for the way of the edge's corners from each other.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn slip(&self, bend: &RestFold, side: usize) -> f32 {
         let slip = self.foot[side] - bend.foot[side];
         TOGETHER * (slip * slip)
     }
 
     /// Forces on both far corners, and against them on the edge.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn spread(&self, [c, d]: [Vec3; 2]) -> [Vec3; 4] {
         let [x, y] = self.foot;
         [-(c * (1.0 - x) + d * (1.0 - y)), -(c * x + d * y), c, d]
@@ -241,7 +241,7 @@ impl Fold {
 }
 
 /// Adds the curvature that a change of a fold's angle makes.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &RestFold, change: f32) {
     let [first, second] = hinge.faces;
     if let Some(strain) = strains.get_mut(first as usize) {
@@ -253,7 +253,7 @@ pub(super) fn curve(strains: &mut [Strain], hinge: &Hinge, bend: &RestFold, chan
 }
 
 /// The moment about an edge that the curvatures of its triangles make.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 pub(super) fn moment(strains: &[Strain], cells: &[Cell], hinge: &Hinge, bend: &RestFold, bending: f32) -> f32 {
     let mut sum = 0.0;
     for (side, face) in hinge.faces.into_iter().enumerate() {

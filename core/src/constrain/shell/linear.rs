@@ -65,14 +65,14 @@ impl Kernel for Linearise<'_, '_> {
 
 impl Linearise<'_, '_> {
     /// Where all are, how fast they go, and where they were.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn columns(&self) -> [&[Vec3]; 3] {
         let Columns { shift, p, q, .. } = &self.solver.vectors;
         [p, q, shift]
     }
 
     /// From one particle to another: now, along what forces act, and as it was.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn ways(&self, a: usize, b: usize) -> [Vec3; 3] {
         let ([x, v, x0], h) = (self.columns(), self.solver.step.h);
         [x[b] - x[a], (x[b] - x[a]) - (v[b] - v[a]) * h, x0[b] - x0[a]]
@@ -233,7 +233,7 @@ impl Linearise<'_, '_> {
 }
 
 /// The area of a triangle at rest \[m²\].
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn area(cells: &[Cell], face: u32) -> f32 {
     cells.get(face as usize).map_or(0.0, |cell| cell.area)
 }

@@ -73,7 +73,7 @@ impl Cell {
     }
 
     /// What warp and weft become where the edges are these.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn deform(&self, [e, f]: [Vec3; 2]) -> [Vec3; 2] {
         let [a, b, c, d] = self.inverse;
         [e * a + f * b, e * c + f * d]
@@ -87,14 +87,14 @@ impl Cell {
     }
 
     /// The forces on the second and the third corner of the stresses along warp and weft; that on the first is against both.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn forces(&self, [p, q]: [Vec3; 2]) -> [Vec3; 2] {
         let [a, b, c, d] = self.inverse;
         [p * a + q * c, p * b + q * d]
     }
 
     /// Stresses × area × h² of strains along warp, weft, and of the angle between them.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn stress(&self, params: &ShellParams, h: f32, strain: [f32; 3]) -> [f32; 3] {
         let scale = self.area * (h * h);
         let [warp, weft] = params.stretch;
@@ -107,7 +107,7 @@ impl Strain {
 
     /// The triangle with these edges now, along others, and as it was as the sub-step began; with the push × h² on its second and
     /// third corner.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn of(
         cell: &Cell,
         params: &ShellParams,
@@ -127,21 +127,21 @@ impl Strain {
     }
 
     /// How strains change as warp and weft do, along the directions of the beginning.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn rate(&self, [du, dv]: [Vec3; 2]) -> [f32; 3] {
         let [u, v] = self.along;
         [dot(u, du), dot(v, dv), dot(u, dv) + dot(v, du)]
     }
 
     /// The forces of stresses on the second and the third corner, inward where it is stretched.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     fn push(&self, cell: &Cell, [warp, weft, shear]: [f32; 3]) -> [Vec3; 2] {
         let [u, v] = self.along;
         cell.forces([u * warp + v * shear, v * weft + u * shear])
     }
 
     /// The resistance × h² to a change of the edges, against it on the second and the third corner.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn resist(&self, cell: &Cell, params: &ShellParams, step: &Step, edges: [Vec3; 2]) -> [Vec3; 2] {
         let change = cell.deform(edges);
         let [warp, weft, shear] = cell.stress(params, step.h, self.rate(change));
@@ -154,7 +154,7 @@ impl Strain {
     }
 
     /// How its corners resist each other × h²: the blocks of the first and the second, the second and the third, the third and the first.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn blocks(&self, cell: &Cell, params: &ShellParams, step: &Step) -> [Mat3; 3] {
         let [a, b, c, d] = cell.inverse;
         // What warp and weft gain as each corner goes.
@@ -179,7 +179,7 @@ impl Strain {
 }
 
 /// Green's strain along warp and weft, and twice that between them.
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg_attr(not(one_by_one), inline(always))]
 fn green([u, v]: [Vec3; 2]) -> [f32; 3] {
     [0.5 * (dot(u, u) - 1.0), 0.5 * (dot(v, v) - 1.0), dot(u, v)]
 }
