@@ -20,7 +20,7 @@ const SWEEPS: u32 = 4;
 pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bodies: &mut Bodies<'_>) {
     kept.counts.contacts = 0;
     if bodies.substep.number == 0 {
-        taut::list(rest, kept);
+        taut::list(rest, kept, work);
         kept.counts.compare(rest);
         if let Some(near) = &mut kept.near {
             near.forget(rest);
@@ -31,7 +31,7 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
     }
     scenery::gather(rest, kept, work, bodies);
     let h = bodies.substep.seconds();
-    let (mut torque, mut safe) = (Vec3::ZERO, false);
+    let mut safe = false;
     for round in 0..ROUNDS {
         let meetings = search::search(rest, kept, work, bodies);
         if meetings == 0 && kept.counts.contacts == 0 && kept.counts.surfaces == 0 {
@@ -39,16 +39,15 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
             break;
         }
         work.searched.copy_from_slice(work.now);
-        let before = torque;
         for _ in 0..SWEEPS {
-            torque += taut::hold(kept, work);
-            torque += sweep(kept, work, h);
-            torque += rub(kept, work, h);
+            taut::hold(kept, work);
+            sweep(kept, work, h);
+            rub(kept, work, h);
         }
         if meetings == 0 {
             let share = share(work);
             if share >= 1.0 || round + 1 == ROUNDS {
-                torque = before + (torque - before) * hold(work, share);
+                hold(work, share);
                 bodies.report.effort.capped += u64::from(share < 1.0);
                 safe = true;
                 break;
@@ -59,7 +58,7 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
     if scenery::hold(kept, work, bodies) || !safe {
         zones::hold(rest, kept, work, bodies);
     }
-    zones::keep_spin(kept, work, torque);
+    zones::keep_spin(kept, work);
     scenery::follow(kept, work, bodies);
     act(kept, work, bodies);
 }
@@ -74,14 +73,13 @@ fn share(work: &Work<'_>) -> f32 {
 }
 
 /// Leaves that share of the pushes: of all alike, so that momenta stay.
-fn hold(work: &mut Work<'_>, share: f32) -> f32 {
+fn hold(work: &mut Work<'_>, share: f32) {
     if share < 1.0 {
         for i in 0..work.now.len() {
             let pushed = work.now[i] - work.searched[i];
             work.put(i, work.searched[i] + pushed * share);
         }
     }
-    share
 }
 
 /// Lets particles and their velocities follow: these by the sum of all pushes, which is not rounded to where they are.
@@ -96,9 +94,8 @@ fn act(kept: &Kept<'_>, work: &Work<'_>, bodies: &mut Bodies<'_>) {
     }
 }
 
-/// Pushes all to the distances that they are to have; returns the moment of the pushes about where all were, over h.
-fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
-    let mut torque = Vec3::ZERO;
+/// Pushes all to the distances that they are to have.
+fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) {
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
     // Points over triangles first: what leans pushes only where that leaves it too near.
     for leaning in [false, true] {
@@ -107,7 +104,7 @@ fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
             let distance = contact.between(|i| work.now[i]).dot(contact.normal);
             let change = contact.touch.press(contact.target / h, distance / h) * h;
             if change != 0.0 && ease > 0.0 {
-                torque += push(contact, kept.weight, work, contact.normal * (change / ease));
+                push(contact, kept.weight, work, contact.normal * (change / ease));
             }
         }
     }
@@ -116,13 +113,11 @@ fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
         let change = touch.press(*offset / h, work.now[i].dot(*normal) / h);
         work.shift(i, *normal * (change * h));
     }
-    torque
 }
 
 /// Takes from the slip of all what friction can by what has pressed them, but for the speed that gives a missing gap back, which
-/// `settle` takes again; returns the moment of that.
-fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
-    let mut torque = Vec3::ZERO;
+/// `settle` takes again.
+fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) {
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
     for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.tangent.acts(&contact.touch)) {
         let ease = ease(contact, kept.weight);
@@ -130,7 +125,7 @@ fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
         let load = contact.touch.pressed() - contact.recovery / h;
         let change = contact.tangent.hold(&contact.touch, slip / h, load) * h;
         if change != Vec3::ZERO && ease > 0.0 {
-            torque += push(contact, kept.weight, work, change / ease);
+            push(contact, kept.weight, work, change / ease);
         }
     }
     for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.tangent.acts(&surface.touch)) {
@@ -139,7 +134,6 @@ fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) -> Vec3 {
         let load = surface.touch.pressed() - surface.recovery / h;
         work.shift(i, surface.tangent.hold(&surface.touch, slip, load) * h);
     }
-    torque
 }
 
 /// How far two move apart by a unit push \[1/kg\].
@@ -148,10 +142,9 @@ pub(super) fn ease(contact: &Contact, weight: &[f32]) -> f32 {
     parts.fold(0.0, |sum, (&corner, share)| sum + share * share * weight[corner as usize])
 }
 
-/// Pushes two apart by equal and opposite pushes; returns their moment.
-fn push(contact: &Contact, weight: &[f32], work: &mut Work<'_>, by: Vec3) -> Vec3 {
+/// Pushes two apart by equal and opposite pushes.
+fn push(contact: &Contact, weight: &[f32], work: &mut Work<'_>, by: Vec3) {
     for (&corner, share) in contact.corners.iter().zip(contact.weights) {
         work.shift(corner as usize, by * (share * weight[corner as usize]));
     }
-    contact.between(|i| work.arm[i]).cross(by)
 }

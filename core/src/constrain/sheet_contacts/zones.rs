@@ -83,10 +83,11 @@ fn move_as_one(weight: &[f32], rows: &[u32], work: &mut Work<'_>, of: usize) {
 ///
 /// That is rounding and friction across the thickness, and what comes of it that pushes count from the sub-step's beginning on. Nothing is
 /// kept where something is fixed or touches the scenery, nor where sheets are so fast that it would turn them by more than a little.
-pub(super) fn keep_spin(kept: &Kept<'_>, work: &mut Work<'_>, torque: Vec3) {
+pub(super) fn keep_spin(kept: &Kept<'_>, work: &mut Work<'_>) {
     let members = || (0..kept.rows.len()).filter(|&i| kept.rows[i] != NOBODY);
-    let Some(origin) = members().next().filter(|_| torque != Vec3::ZERO) else { return };
-    if kept.counts.surfaces > 0 || members().any(|i| kept.weight[i] == 0.0) {
+    let Some(origin) = members().next() else { return };
+    let is_held = kept.counts.surfaces > 0 || members().any(|i| kept.weight[i] == 0.0);
+    if is_held || members().all(|i| work.moved[i] == Vec3::ZERO) {
         return;
     }
     let (mut mass, mut arms, mut middle) = (0.0, Vec3::ZERO, Vec3::ZERO);
@@ -96,9 +97,9 @@ pub(super) fn keep_spin(kept: &Kept<'_>, work: &mut Work<'_>, torque: Vec3) {
         middle += (work.now[i] - work.now[origin]) / kept.weight[i];
     }
     let (arms, middle) = (work.arm[origin] + arms / mass, work.now[origin] + middle / mass);
-    let mut whole = Whole::of(torque);
+    let mut whole = Whole::NONE;
     for i in members() {
-        whole.add(work.arm[i] - arms, work.now[i] - middle, 1.0 / kept.weight[i], Vec3::ZERO);
+        whole.add(work.arm[i] - arms, work.now[i] - middle, 1.0 / kept.weight[i], work.moved[i]);
     }
     let turn = whole.turn();
     if turn.dot(turn) < LITTLE * LITTLE {
