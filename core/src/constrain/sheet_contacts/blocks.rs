@@ -146,12 +146,14 @@ impl Block {
     #[inline(always)]
     pub(super) fn around(&self, place: usize) -> Bounds {
         let (half, lane) = (place / LANES, place % LANES);
-        let ends = |of: &[[[[f32; LANES]; 3]; 2]; 2], end: usize| {
-            let [x, y, z] = &of[half][end];
-            [x[lane], y[lane], z[lane], 0.0]
-        };
-        let [low, high] = [&self.low, &self.high].map(|of| [ends(of, 0), ends(of, 1)]);
-        Bounds { low, high }
+        let mut around = Bounds::EMPTY;
+        for end in 0..2 {
+            for axis in 0..3 {
+                around.low[end][axis] = self.low[half][end][axis][lane];
+                around.high[end][axis] = self.high[half][end][axis][lane];
+            }
+        }
+        around
     }
 
     /// Its corners.
