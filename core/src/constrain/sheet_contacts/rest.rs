@@ -42,7 +42,6 @@ impl Face {
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Edge {
-    /// Its ends, and a bit if it begins a run of those that go side by side.
     pub(super) ends: [u32; 2],
     /// The square of its length at rest \[m²\].
     pub(super) least: f32,

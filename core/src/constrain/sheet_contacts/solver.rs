@@ -20,7 +20,7 @@ const SWEEPS: u32 = 4;
 pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bodies: &mut Bodies<'_>) {
     kept.counts.contacts = 0;
     if bodies.substep.number == 0 {
-        taut::list(rest, kept, work);
+        taut::list(rest, kept);
         kept.counts.compare(rest);
         if let Some(near) = &mut kept.near {
             near.forget(rest);
