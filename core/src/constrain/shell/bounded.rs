@@ -1,22 +1,26 @@
 //! The momenta and the energy of the pieces of a shell that nothing holds.
 
-use super::fold::{Fold, RestFold, curve};
-use super::membrane::{Cell, Strain};
+use super::Bodies;
+use super::membrane::Cell;
 use super::pieces::{Piece, Roll};
 use super::plate::Shape;
 use super::solver::{NOBODY, Solver, Vectors};
-use super::step::Step;
-use super::{Bodies, ShellParams};
-use crate::cloth::Hinge;
+use super::stored::Stored;
 use crate::constrain::budget::{Budget, Free};
 use crate::constrain::turn::{outer, turn_of};
 use crate::constrain::walls::Wall;
 use crate::constrain::whole::Group;
-use crate::math::{largest, max};
+use crate::math::{aside, dot, largest, length, max};
 use glam::{Mat3, Vec3};
 
 /// Sums that go on side by side.
 const SUMS: usize = 8;
+/// The share of the energy of what is pressed by walls that may be rounding.
+const EVEN: f32 = 1e-5;
+/// How often the way of what is pressed by walls is halved.
+const SHORTENED: u32 = 6;
+/// The sine of the angle by which a wall has to lean out of others to be another.
+const LEVEL: f32 = 1e-3;
 
 impl Solver<'_> {
     /// Moves all by their shifts; of pieces that nothing holds so that their momenta stay, and no farther than the energy that they have takes them.
@@ -36,9 +40,20 @@ impl Solver<'_> {
                 self.act_freely(bodies, &piece, roll.budget(&piece));
             } else {
                 roll.budget(&piece).forget();
-                self.act(bodies, members());
+                if piece.triangles.is_empty() || !self.leans(members()) {
+                    self.act(bodies, members());
+                } else {
+                    self.act_on_walls(bodies, &piece);
+                }
             }
         }
+    }
+
+    /// Tells whether none of them is fixed, and whatever presses them stands still.
+    fn leans(&self, mut members: impl Iterator<Item = usize>) -> bool {
+        let Vectors { rows, weight, .. } = &self.vectors;
+        let stands = |i: usize| self.walls.get(i).is_none_or(|wall| !wall.is_met() || wall.stands());
+        members.all(|i| (rows[i] == NOBODY || weight[i] > 0.0) && stands(i))
     }
 
     /// Tells whether none of them is fixed, and nothing in their way.
@@ -101,6 +116,97 @@ impl Solver<'_> {
         budget.keep(now, most);
     }
 
+    /// Moves a piece that walls press which stand still: they give it no energy, so it has no more of motion and strain than as the sub-step began, and what
+    /// forces have done on its way. A solution along the directions of the beginning makes more of triangles that are pressed far. Bending is asked for
+    /// only where what is in the plane of triangles, which costs little to tell, comes to too much.
+    fn act_on_walls(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>) {
+        let strained = self.stored(piece).stretched(bodies.before[0]);
+        self.act(bodies, piece.members.iter().map(|&number| number as usize));
+        let [moved, given, unsure] = self.given(bodies, piece);
+        let now = self.moving(bodies, piece) + self.stored(piece).stretched(bodies.position);
+        if now > (moved + strained) * (1.0 + EVEN) + given + unsure {
+            let begun = moved + self.stored(piece).within(bodies.before[0]);
+            let slack = unsure + self.rounding(bodies, piece) + EVEN * begun;
+            if self.seen(bodies, piece) > begun + given + slack {
+                self.hold_short(bodies, piece, [begun + unsure, given]);
+            }
+        }
+    }
+
+    /// Lets a piece go only as much of its way, but for how all together go along the walls, as takes no more energy than it had as it had `begun`, and
+    /// what it is `given` on all of it \[J\]: without any it has no more than it was strained by. Whoever was on this side of a wall is so then.
+    fn hold_short(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>, [begun, given]: [f32; 2]) {
+        let (h, slide) = (bodies.substep.seconds(), self.along_walls(bodies, piece));
+        let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
+        for round in 0..=SHORTENED {
+            // At last the longest that fits.
+            let next = if round < SHORTENED { 0.5 * (least + far) } else { least };
+            let share = if next > 0.0 { next / now } else { break };
+            for row in piece.rows.iter().map(|&row| row as usize) {
+                let from = bodies.before[0][row] + slide * h;
+                bodies.position[row] = from + (bodies.position[row] - from) * share;
+                bodies.velocity[row] = slide + (bodies.velocity[row] - slide) * share;
+            }
+            now = next;
+            *if self.seen(bodies, piece) <= begun + given * now { &mut least } else { &mut far } = now;
+        }
+    }
+
+    /// How the middle of a piece goes along all walls that press it: they take none of that if they are smooth.
+    fn along_walls(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> Vec3 {
+        let walls = || piece.members.iter().filter_map(|&i| self.walls.get(i as usize)).filter(|wall| wall.is_met());
+        let Some(whole) = Group::of(bodies, piece.rows).whole().filter(|_| !walls().any(Wall::is_rough)) else {
+            return Vec3::ZERO;
+        };
+        let (mut along, mut across) = (whole.drift, [Vec3::ZERO; 3]);
+        for normal in walls().flat_map(Wall::normals) {
+            let other = across.iter().fold(normal, |normal, &across| aside(normal, across));
+            let size = length(other);
+            if let Some(free) = across.iter_mut().find(|across| **across == Vec3::ZERO).filter(|_| size > LEVEL) {
+                *free = other / size;
+                along = aside(along, *free);
+            }
+        }
+        along
+    }
+
+    /// The energy of a piece, of strain and of motion \[J\].
+    fn seen(&mut self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> f32 {
+        self.stored(piece).within(bodies.position) + self.moving(bodies, piece)
+    }
+
+    /// The energy of motion of a piece \[J\]. How fast anybody goes into a wall that has pressed him is no part of that, as it takes it from him.
+    fn moving(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> f32 {
+        let mut sums = [0.0; SUMS];
+        for (i, (&number, &row)) in piece.members.iter().zip(piece.rows).enumerate() {
+            let fast = bodies.velocity[row as usize];
+            let fast = self.walls.get(number as usize).map_or(fast, |wall| wall.without_inward(fast));
+            sums[i % SUMS] += 0.5 * bodies.mass[row as usize] * dot(fast, fast);
+        }
+        sums.iter().sum()
+    }
+
+    /// The energy of motion of a piece as the sub-step began, and how much forces have added to it on the way that it has gone, and the method by itself;
+    /// and by how much rounding of places may be wrong about that \[J\].
+    fn given(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> [f32; 3] {
+        let (Vectors { shift, met, .. }, h) = (&self.vectors, bodies.substep.seconds());
+        let (mut sums, mut far) = ([[0.0; SUMS]; 4], 0.0);
+        for (i, (&number, &row)) in piece.members.iter().zip(piece.rows).enumerate() {
+            let (number, row) = (number as usize, row as usize);
+            let (mass, solved) = (bodies.mass[row], met[number] + shift[number]);
+            let (before, free) = (bodies.before[1][row], bodies.velocity[row] - solved / h);
+            let way = (bodies.position[row] - bodies.before[0][row]) / h;
+            let (push, energy) = ((free - before) * mass, |v: Vec3| 0.5 * mass * dot(v, v));
+            sums[0][i % SUMS] += energy(before);
+            sums[1][i % SUMS] += dot(push, way);
+            sums[2][i % SUMS] += energy(free) - energy(before) - dot(push, way - solved / h);
+            sums[3][i % SUMS] += length(push);
+            far = max(far, largest(bodies.position[row]));
+        }
+        let [begun, work, own, pushed] = sums.map(|sums| sums.iter().sum::<f32>());
+        [begun, work + max(own, 0.0), pushed * (f32::EPSILON * far / h)]
+    }
+
     /// The energy of a piece, of motion beside that of its middle and of strain \[J\].
     fn energy(&mut self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> f32 {
         Group::of(bodies, piece.rows).moving() + self.stored(piece).within(bodies.position)
@@ -126,69 +232,4 @@ impl Solver<'_> {
         let Vectors { rows, r, .. } = &mut self.vectors;
         (Stored { params, triangles, cells, strains, hinges, bends, rows, piece: *piece }, r)
     }
-}
-
-/// What a piece is strained by.
-struct Stored<'s> {
-    params: &'s ShellParams,
-    triangles: &'s [[u32; 3]],
-    cells: &'s [Cell],
-    strains: &'s mut [Strain],
-    hinges: &'s [Hinge],
-    bends: &'s [RestFold],
-    rows: &'s [u32],
-    piece: Piece<'s>,
-}
-
-impl Stored<'_> {
-    /// The energy of strain where all are in these places \[J\].
-    fn within(&mut self, places: &[Vec3]) -> f32 {
-        let stretched = self.stretched(places);
-        if !(self.params.bending > 0.0) {
-            return stretched;
-        }
-        let mut sums = [0.0; SUMS];
-        self.curve(places);
-        for (number, triangle) in self.triangles_of().enumerate() {
-            let ([a, b, c], area) = (self.strains[triangle].curvature, self.cells[triangle].area);
-            sums[number % SUMS] += 0.5 * self.params.bending * area * (a * a + b * b + c * c);
-        }
-        stretched + sums.iter().sum::<f32>()
-    }
-
-    /// The part of it that is in the plane of triangles \[J\].
-    fn stretched(&self, places: &[Vec3]) -> f32 {
-        let mut sums = [0.0; SUMS];
-        for (number, triangle) in self.triangles_of().enumerate() {
-            if let Some([a, b, c]) = at(places, self.rows, self.triangles[triangle]) {
-                sums[number % SUMS] += self.cells[triangle].energy(self.params, [b - a, c - a]);
-            }
-        }
-        sums.iter().sum()
-    }
-
-    fn triangles_of(&self) -> impl Iterator<Item = usize> + use<'_> {
-        self.piece.triangles.iter().map(|&triangle| triangle as usize)
-    }
-
-    /// Adds to each triangle's curvature what its folds make of it.
-    fn curve(&mut self, places: &[Vec3]) {
-        let still = Step { h: 1.0, lag: 0.0, rate: 1.0 };
-        for &triangle in self.piece.triangles {
-            self.strains[triangle as usize].curvature = [0.0; 3];
-        }
-        for hinge in self.piece.hinges.iter().map(|&hinge| hinge as usize) {
-            let (hinge, bend) = (&self.hinges[hinge], &self.bends[hinge]);
-            if let Some([a, b, c, d]) = at(places, self.rows, hinge.corners()) {
-                let (_, open) = Fold::of(bend, &still, [[b - a, c - a, d - a]; 3]);
-                curve(self.strains, hinge, bend, open);
-            }
-        }
-    }
-}
-
-/// The places of some corners, if all are there.
-fn at<const N: usize>(places: &[Vec3], rows: &[u32], corners: [u32; N]) -> Option<[Vec3; N]> {
-    let found = corners.map(|corner| rows.get(corner as usize).and_then(|&row| places.get(row as usize)));
-    found.iter().all(Option::is_some).then(|| found.map(|place| place.copied().unwrap_or_default()))
 }

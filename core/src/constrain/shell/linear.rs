@@ -293,19 +293,19 @@ fn strain_of<F: Eight>(
 }
 
 #[inline(always)]
-fn deform<F: Eight>([a, b, c, d]: [F; 4], [_, e, f]: [Vectors<F>; 3]) -> [Vectors<F>; 2] {
+pub(super) fn deform<F: Eight>([a, b, c, d]: [F; 4], [_, e, f]: [Vectors<F>; 3]) -> [Vectors<F>; 2] {
     [e * a + f * b, e * c + f * d]
 }
 
 #[inline(always)]
-fn green<F: Eight>(like: F, [u, v]: [Vectors<F>; 2]) -> [F; 3] {
+pub(super) fn green<F: Eight>(like: F, [u, v]: [Vectors<F>; 2]) -> [F; 3] {
     let (half, one) = (like.all(0.5), like.all(1.0));
     [half * (u.dot(u) - one), half * (v.dot(v) - one), u.dot(v)]
 }
 
 /// Stresses × `scale`, an area by which they act.
 #[inline(always)]
-fn stress<F: Eight>(params: &ShellParams, scale: F, [warp, weft, shear]: [F; 3]) -> [F; 3] {
+pub(super) fn stress<F: Eight>(params: &ShellParams, scale: F, [warp, weft, shear]: [F; 3]) -> [F; 3] {
     let [first, second] = params.stretch;
     [scale * scale.all(first) * warp, scale * scale.all(second) * weft, scale * scale.all(params.shear) * shear]
 }

@@ -18,6 +18,7 @@ mod plate;
 mod resist;
 mod solver;
 mod step;
+mod stored;
 mod strips;
 mod sweep;
 mod taut;

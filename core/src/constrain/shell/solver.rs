@@ -182,10 +182,11 @@ impl Solver<'_> {
     /// Counts what walls have moved as shifts, where all of them have let go: what is left alone keeps both momenta.
     fn part(&mut self, bodies: &mut Bodies<'_>) {
         let Vectors { rows, shift, met, .. } = &mut self.vectors;
-        for ((&row, shift), met) in rows.iter().zip(&mut **shift).zip(&**met) {
-            if *met != Vec3::ZERO {
-                bodies.shift(row as usize, -*met);
-                *shift += *met;
+        for ((&row, shift), met) in rows.iter().zip(&mut **shift).zip(&mut **met) {
+            let met = core::mem::take(met);
+            if met != Vec3::ZERO {
+                bodies.shift(row as usize, -met);
+                *shift += met;
             }
         }
     }

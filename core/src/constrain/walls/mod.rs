@@ -68,6 +68,8 @@ pub(super) struct Wall {
     /// The normal of another face that is near, or zero, and how far along that the particle is to be from the origin, at the least \[m\].
     beside: Vec3,
     beyond: f32,
+    /// 1 if any face that is near moves.
+    moves: u32,
 }
 
 /// The words of the wall of a particle.
@@ -180,6 +182,26 @@ impl Wall {
         self.state != NONE && self.touch.pressed() > 0.0
     }
 
+    /// A speed as seen from it without what would go into it, if it has pressed its particle.
+    pub(super) fn without_inward(&self, fast: Vec3) -> Vec3 {
+        if self.is_met() { fast - self.normal * min(fast.dot(self.normal), 0.0) } else { fast }
+    }
+
+    /// Its normal, and that of another face beside it or zero.
+    pub(super) fn normals(&self) -> [Vec3; 2] {
+        [self.normal, self.beside]
+    }
+
+    /// Tells whether it is not smooth.
+    pub(super) fn is_rough(&self) -> bool {
+        self.touch.has_friction()
+    }
+
+    /// Tells whether it stands still, and all that is near besides.
+    pub(super) fn stands(&self) -> bool {
+        self.moves == 0
+    }
+
     /// Takes the face that the particle is farthest behind where the method has moved it.
     fn look(&mut self, near: f32, bodies: &Bodies<'_>) {
         let (was, searched) = (core::mem::take(&mut self.fresh), self.clear);
@@ -209,11 +231,12 @@ impl Wall {
         let (mut most, mut second) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
         let (mut least, mut nearest) = (f32::INFINITY, Vec3::ZERO);
         let mut free = self.clear;
-        (self.beside, self.beyond) = (Vec3::ZERO, 0.0);
+        (self.beside, self.beyond, self.moves) = (Vec3::ZERO, 0.0, 0);
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
             let Contact { point, normal, distance, velocity, slack, .. } = *contact;
             // What moves is asked again in every sub-step.
             self.clear = if velocity == Vec3::ZERO { min(distance, self.clear) } else { 0.0 };
+            self.moves |= u32::from(velocity != Vec3::ZERO);
             free = min(distance - length(velocity) * h, free);
             if !(distance < near + 4.0 * slack + length(velocity) * h) || !normal.is_finite() || !counts(contact) {
                 return;
