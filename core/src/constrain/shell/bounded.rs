@@ -15,8 +15,9 @@ use glam::{Mat3, Vec3};
 
 /// Sums that go on side by side.
 const SUMS: usize = 8;
-/// The share of the energy of what is pressed by walls that may be rounding.
-const EVEN: f32 = 1e-5;
+/// The share of its energy that what is pressed by walls may gain in a sub-step: that much is rounding, and what solutions are cut off at. What gains
+/// more has turned too far for the directions of the beginning.
+const EVEN: f32 = 1e-3;
 /// How often the way of what is pressed by walls is halved.
 const SHORTENED: u32 = 6;
 /// The sine of the angle by which a wall has to lean out of others to be another.
