@@ -26,9 +26,9 @@ enum By {
     Corner,
     /// A floor that it falls on, edge on.
     Floor,
-    /// The same, aslant.
+    /// The same, aslant, and down a slope.
     Slope,
-    /// A floor that it slides on, flat.
+    /// A slope that it slides on, flat.
     Slide,
     /// Two plates that close on it and part again.
     Plates,
@@ -68,7 +68,7 @@ struct Outcome {
     away: f32,
     /// How far anybody was beyond the scenery, in sides of the sheet.
     beyond: f32,
-    /// How much faster or slower all together went along the floor than as they began, at the most and as a share of their speed then.
+    /// How much faster or slower all together went along the floor than a body without friction, at the most and as a share of their speed as they began.
     braked: f32,
     alive: bool,
     capped: u64,
@@ -155,6 +155,11 @@ impl Crush {
         }
     }
 
+    /// Where all falls.
+    fn down(&self) -> Vec3 {
+        if matches!(self.by, By::Slope | By::Slide) { Vec3::new(0.3, -1.0, -0.4).normalize() } else { Vec3::NEG_Y }
+    }
+
     /// The particles as they begin.
     fn start(&self, sheet: &Sheet, place: &Place, random: &mut Random) -> Vec<Particle> {
         let velocity = place.turned(self.thrown()) * self.size;
@@ -204,7 +209,8 @@ impl Crush {
         };
         let friction = Some(Friction { static_: self.friction, kinetic: self.friction });
         let materials = [ContactMaterial { friction, elasticity: Some(self.elasticity) }];
-        let gravity = Gravity { acceleration: place.turned(Vec3::NEG_Y) * (G * self.size) };
+        let pull = place.turned(self.down()) * (G * self.size);
+        let gravity = Gravity { acceleration: pull };
         let colliders: &dyn Collider = &(&planes[..], &plates[..]);
         let scene = Scene {
             start: &start,
@@ -218,15 +224,14 @@ impl Crush {
         };
         let mut system = started(&scene, start.len(), 0);
         let energy = |x: &[Vec3], v: &[Vec3]| {
-            let height = |x: Vec3| (x - place.origin).dot(place.turn[1]);
-            let one = |i: usize| start[i].mass * (0.5 * v[i].length_squared() + G * self.size * height(x[i]));
+            let one = |i: usize| start[i].mass * (0.5 * v[i].length_squared() - (x[i] - place.origin).dot(pull));
             let moving: f64 = (0..x.len()).map(|i| f64::from(one(i))).sum();
             (moving + stretching(&sheet, &params, self.size, x)) / (f64::from(DENSITY) * f64::from(self.size).powi(4))
         };
         let (places, speeds): (Vec<_>, Vec<_>) = start.iter().map(|p| (p.position, p.velocity)).unzip();
         let most = energy(&places, &speeds) + f64::from(work);
+        let flat = |v: Vec3| v - place.turn[1] * v.dot(place.turn[1]);
         let drift = |v: &[Vec3]| {
-            let flat = |v: Vec3| v - place.turn[1] * v.dot(place.turn[1]);
             flat(v.iter().zip(&start).map(|(&v, p)| v * p.mass).sum::<Vec3>())
                 / start.iter().map(|p| p.mass).sum::<f32>()
         };
@@ -241,7 +246,8 @@ impl Crush {
             outcome.energy = outcome.energy.max(energy(x, v) / most);
             let away = x.iter().map(|&x| (x - place.origin).length() / self.size).fold(0.0, f32::max);
             outcome.away = outcome.away.max(away);
-            let braked = (drift(v) - drift(&speeds)).length() / (self.speed * self.size);
+            let free = drift(&speeds) + flat(pull) * (frame as f32 / 60.0);
+            let braked = (drift(v) - free).length() / (self.speed * self.size);
             outcome.braked = outcome.braked.max(braked);
             let swung = way * self.size * (core::f32::consts::TAU * frequency * frame as f32 / 60.0).sin();
             let deep = |planes: &[[Vec3; 2]], swung: f32| -> f32 {
@@ -261,9 +267,10 @@ impl Crush {
         // Plates that meet leave no room.
         let beyond = outcome.beyond < 1e-4 || self.by == By::Ring;
         let sound = outcome.alive && outcome.away < 12.0 && outcome.capped == 0 && beyond;
-        // In one step of a sixtieth of a second what is hit goes through its cells at once: it keeps to a bound, and does not explode. Of 500 one gave 8
+        // In one step of a sixtieth of a second what moves goes through its cells at once: it keeps to a bound, and does not explode. Of 500 one gave 8
         // times its energy, and some have been met that gave 26 times.
-        let most = if self.substeps > 1 { 1.01 } else { 100.0 };
+        let is_pressed = matches!(self.by, By::Plates | By::Ring);
+        let most = if self.substeps > 1 || !is_pressed { 1.01 } else { 100.0 };
         prop_assert!(sound && outcome.energy < most, "{self:?}: {outcome:?}");
         Ok(())
     }
@@ -394,7 +401,7 @@ fn smooth_floors_brake_nobody() {
             speed: random.magnitude(0.5, 15.0),
             size: [0.1, 1.0, 10.0][i / 2 % 3],
             far: 0.0,
-            rough: [0.0, 1e-4, 0.1][i % 3],
+            rough: [0.0, 1e-4, 0.1][i / 4 % 3],
             seed: i as u64,
         };
         let outcome = crush.run(40);
@@ -419,7 +426,7 @@ fn nobody_is_pressed_through_a_floor() {
             speed: 10.6,
             size: [10.0, 1.0][i / 6 % 2],
             far: [0.0, 30.0][i / 2 % 2],
-            rough: [0.0, 1e-4, 0.1][i % 3],
+            rough: [0.0, 1e-4, 0.1][i / 4 % 3],
             seed: i as u64,
         };
         let outcome = crush.run(40);

@@ -19,7 +19,7 @@ impl Force for Drag {
         true
     }
 
-    #[cfg(not(one_by_one))]
+    #[cfg(not(target_os = "none"))]
     fn steady(&self) -> Option<super::Steady> {
         Some(super::Steady { acceleration: None, drags: true })
     }

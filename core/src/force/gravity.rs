@@ -38,7 +38,7 @@ impl Force for Gravity {
         true
     }
 
-    #[cfg(not(one_by_one))]
+    #[cfg(not(target_os = "none"))]
     fn steady(&self) -> Option<super::Steady> {
         Some(super::Steady { acceleration: Some(self.acceleration), drags: false })
     }

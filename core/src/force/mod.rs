@@ -206,7 +206,7 @@ impl Force for () {
     fn is_local(&self) -> bool {
         true
     }
-    #[cfg(not(one_by_one))]
+    #[cfg(not(target_os = "none"))]
     fn steady(&self) -> Option<Steady> {
         Some(Steady::default())
     }
@@ -249,12 +249,12 @@ macro_rules! sum_of {
             }
             needs
         }
-        #[cfg(not(one_by_one))]
+        #[cfg(not(target_os = "none"))]
         fn is_local(&self) -> bool {
             let $this = self;
             $parts.into_iter().all(|part| part.is_local())
         }
-        #[cfg(not(one_by_one))]
+        #[cfg(not(target_os = "none"))]
         fn steady(&self) -> Option<Steady> {
             let $this = self;
             let mut all = Steady::default();
@@ -302,12 +302,12 @@ macro_rules! same_as {
             let $this = self;
             $force.needs()
         }
-        #[cfg(not(one_by_one))]
+        #[cfg(not(target_os = "none"))]
         fn is_local(&self) -> bool {
             let $this = self;
             $force.is_local()
         }
-        #[cfg(not(one_by_one))]
+        #[cfg(not(target_os = "none"))]
         fn steady(&self) -> Option<$crate::force::Steady> {
             let $this = self;
             $force.steady()

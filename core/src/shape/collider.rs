@@ -65,7 +65,7 @@ pub trait Collider: Sync {
     /// Marks those of many paths that might meet it, each inside a hull of its own: as [`Collider::may_touch`] says by default. Chips without an
     /// operating system do not ask.
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
-        if cfg!(one_by_one) {
+        if cfg!(target_os = "none") {
             return;
         }
         for (i, mark) in marks.iter_mut().enumerate() {
@@ -79,7 +79,7 @@ pub trait Collider: Sync {
     /// short way, to the same bits. By default anything, unless the path may not touch it at all. Chips without an
     /// operating system do not ask.
     fn facing(&self, bounds: &Aabb) -> Facing {
-        if cfg!(one_by_one) || self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
+        if cfg!(target_os = "none") || self.may_touch(bounds) { Facing::Several } else { Facing::Nothing }
     }
 
     /// It as many things, of which those that are near a place are found at once. By default it is one. Chips without an operating

@@ -27,7 +27,7 @@ pub type Marks = [u32; Hulls::MANY];
 
 impl Hulls {
     /// Their number: on hosts enough to share the cost of a call, on bare metal few, as they lie on the stack.
-    pub const MANY: usize = if cfg!(one_by_one) { 8 } else { 32 };
+    pub const MANY: usize = if cfg!(target_os = "none") { 8 } else { 32 };
 
     /// Those around balls on the cubics with these places and velocities at both ends, so many seconds apart: of their
     /// Bézier control points. Only the first [`Hulls::MANY`] of all columns count; what is missing is at the origin.

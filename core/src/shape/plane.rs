@@ -62,13 +62,13 @@ impl Collider for Plane {
         !(distance > dot(self.normal.abs(), plus(half, Vec3::splat(room))))
     }
 
-    #[cfg(not(one_by_one))]
+    #[cfg(not(target_os = "none"))]
     fn facing(&self, bounds: &Aabb) -> super::Facing {
         if self.may_touch(bounds) { super::Facing::Face(self.face()) } else { super::Facing::Nothing }
     }
 
     // Chips do not ask, and the table of a plane's functions would have it linked.
-    #[cfg(not(one_by_one))]
+    #[cfg(not(target_os = "none"))]
     fn mark_near(&self, hulls: &super::Hulls, marks: &mut super::Marks) {
         hulls.near_plane(self.point, self.normal, marks);
     }

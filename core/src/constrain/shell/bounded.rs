@@ -1,4 +1,4 @@
-//! The momenta and the energy of the pieces of a shell that nothing holds.
+//! The momenta and the energy of the pieces of a shell that nothing holds, and the energy of those that walls press.
 
 use super::Bodies;
 use super::membrane::Cell;
@@ -22,6 +22,17 @@ const EVEN: f32 = 1e-3;
 const SHORTENED: u32 = 6;
 /// The sine of the angle by which a wall has to lean out of others to be another.
 const LEVEL: f32 = 1e-3;
+
+/// The energy of a piece's motion as a sub-step began \[J\], and what forces have given it since.
+struct Given {
+    moved: f32,
+    /// How much forces have added on the way that it has gone, and the method by itself \[J\].
+    work: f32,
+    /// The momentum that forces have added \[kg m/s\].
+    push: Vec3,
+    /// By how much rounding of places may be wrong about their work \[J\].
+    unsure: f32,
+}
 
 impl Solver<'_> {
     /// Moves all by their shifts; of pieces that nothing holds so that their momenta stay, and no farther than the energy that they have takes them.
@@ -117,49 +128,58 @@ impl Solver<'_> {
         budget.keep(now, most);
     }
 
-    /// Moves a piece that walls press which stand still: they give it no energy, so it has no more of motion and strain than as the sub-step began, and what
-    /// forces have done on its way. A solution along the directions of the beginning makes more of triangles that are pressed far. Bending is asked for
-    /// only where what is in the plane of triangles, which costs little to tell, comes to too much.
+    /// Moves a piece that walls press which stand still: they give it no energy, so what is solved leaves it no more of motion and strain than there was as
+    /// the sub-step began, and what forces have done on its way. A solution along the directions of the beginning makes more of triangles that are pressed
+    /// far. Bending is asked for only where what is in the plane of triangles, which costs little to tell, comes to too much.
     fn act_on_walls(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>) {
         let strained = self.stored(piece).stretched(bodies.before[0]);
         self.act(bodies, piece.members.iter().map(|&number| number as usize));
-        let [moved, given, unsure] = self.given(bodies, piece);
+        let given = self.given(bodies, piece);
         let now = self.moving(bodies, piece) + self.stored(piece).stretched(bodies.position);
-        if now > (moved + strained) * (1.0 + EVEN) + given + unsure {
-            let begun = moved + self.stored(piece).within(bodies.before[0]);
-            let slack = unsure + self.rounding(bodies, piece) + EVEN * begun;
-            if self.seen(bodies, piece) > begun + given + slack {
-                self.hold_short(bodies, piece, [begun + unsure, given]);
+        if now > (given.moved + strained) * (1.0 + EVEN) + given.work + given.unsure {
+            let begun = given.moved + self.stored(piece).within(bodies.before[0]);
+            let most = begun + given.unsure + self.rounding(bodies, piece);
+            if self.seen(bodies, piece) > most + given.work + EVEN * begun {
+                self.hold_short(bodies, piece, most, &given);
             }
         }
     }
 
-    /// Lets a piece go only as much of its way, but for how all together go along the walls, as takes no more energy than it had as it had `begun`, and
-    /// what it is `given` on all of it \[J\]: without any it has no more than it was strained by. Whoever was on this side of a wall is so then.
-    fn hold_short(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>, [begun, given]: [f32; 2]) {
+    /// Lets a piece go only as much of its way, but for how all together go along the walls, as takes no more energy than `most` \[J\] and what it is given
+    /// on that: if need be none, when it is strained as it was. Whoever was on this side of a flat wall that presses is so then.
+    fn hold_short(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>, most: f32, given: &Given) {
         let (h, slide) = (bodies.substep.seconds(), self.along_walls(bodies, piece));
+        let along = given.push.dot(slide);
         let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
         for round in 0..=SHORTENED {
             // At last the longest that fits.
             let next = if round < SHORTENED { 0.5 * (least + far) } else { least };
-            let share = if next > 0.0 { next / now } else { break };
+            let share = next / now;
             for row in piece.rows.iter().map(|&row| row as usize) {
                 let from = bodies.before[0][row] + slide * h;
                 bodies.position[row] = from + (bodies.position[row] - from) * share;
                 bodies.velocity[row] = slide + (bodies.velocity[row] - slide) * share;
             }
-            now = next;
-            *if self.seen(bodies, piece) <= begun + given * now { &mut least } else { &mut far } = now;
+            if round < SHORTENED {
+                now = next;
+                let fits = self.seen(bodies, piece) <= most + along + (given.work - along) * now;
+                *if fits { &mut least } else { &mut far } = now;
+            }
         }
     }
 
     /// How the middle of a piece goes along all walls that press it: they take none of that if they are smooth.
     fn along_walls(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> Vec3 {
         let walls = || piece.members.iter().filter_map(|&i| self.walls.get(i as usize)).filter(|wall| wall.is_met());
-        let Some(whole) = Group::of(bodies, piece.rows).whole().filter(|_| !walls().any(Wall::is_rough)) else {
+        if walls().any(Wall::is_rough) {
             return Vec3::ZERO;
-        };
-        let (mut along, mut across) = (whole.drift, [Vec3::ZERO; 3]);
+        }
+        let (mut mass, mut drift, mut across) = (0.0, Vec3::ZERO, [Vec3::ZERO; 3]);
+        for row in piece.rows.iter().map(|&row| row as usize) {
+            mass += bodies.mass[row];
+            drift += bodies.velocity[row] * bodies.mass[row];
+        }
+        let mut along = drift / mass;
         for normal in walls().flat_map(Wall::normals) {
             let other = across.iter().fold(normal, |normal, &across| aside(normal, across));
             let size = length(other);
@@ -187,11 +207,10 @@ impl Solver<'_> {
         sums.iter().sum()
     }
 
-    /// The energy of motion of a piece as the sub-step began, and how much forces have added to it on the way that it has gone, and the method by itself;
-    /// and by how much rounding of places may be wrong about that \[J\].
-    fn given(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> [f32; 3] {
+    /// The energy of motion of a piece as the sub-step began, and what forces have given it since.
+    fn given(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> Given {
         let (Vectors { shift, met, .. }, h) = (&self.vectors, bodies.substep.seconds());
-        let (mut sums, mut far) = ([[0.0; SUMS]; 4], 0.0);
+        let (mut sums, mut far, mut all) = ([[0.0; SUMS]; 4], 0.0, Vec3::ZERO);
         for (i, (&number, &row)) in piece.members.iter().zip(piece.rows).enumerate() {
             let (number, row) = (number as usize, row as usize);
             let (mass, solved) = (bodies.mass[row], met[number] + shift[number]);
@@ -202,10 +221,11 @@ impl Solver<'_> {
             sums[1][i % SUMS] += dot(push, way);
             sums[2][i % SUMS] += energy(free) - energy(before) - dot(push, way - solved / h);
             sums[3][i % SUMS] += length(push);
+            all += push;
             far = max(far, largest(bodies.position[row]));
         }
-        let [begun, work, own, pushed] = sums.map(|sums| sums.iter().sum::<f32>());
-        [begun, work + max(own, 0.0), pushed * (f32::EPSILON * far / h)]
+        let [moved, work, own, pushed] = sums.map(|sums| sums.iter().sum::<f32>());
+        Given { moved, work: work + max(own, 0.0), push: all, unsure: pushed * (f32::EPSILON * far / h) }
     }
 
     /// The energy of a piece, of motion beside that of its middle and of strain \[J\].

@@ -70,8 +70,9 @@ use words::structs;
 /// Forces act along the directions of the sub-step's beginning, and what the turning of tense triangles would take of the angular
 /// momentum is given back, so that both momenta are kept to rounding, and motion without damping loses little. What nothing holds
 /// gains no energy, of motion and strain together, however long its sub-steps: what would be too much is taken from how it deforms. What walls
-/// press that stand still gains no more than forces do on its way (what bending alone gives is not looked for): what would be too much is taken of
-/// its way, but for how all of it goes along smooth walls. What is fixed somewhere, or pressed by what moves, has no such bound. That
+/// press that stand still gains no more than forces do on its way and a thousandth in a sub-step (what bending alone gives is not looked for), but for what
+/// the elasticity of its hits gives back: what would be too much is taken of its way, but for how all of it goes along smooth walls. What is fixed
+/// somewhere, or pressed by what moves, has no such bound. That
 /// holds for each piece that hangs together by triangles and folds, from the beginning or when it has been torn: none takes what another has. In a
 /// periodic room a piece has to be smaller than half a side for that. Whoever is fixed stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing.
 ///

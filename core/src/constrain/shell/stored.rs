@@ -12,7 +12,7 @@ use crate::cloth::Hinge;
 use crate::lanes::{self, Eight, Kernel, LANES};
 use glam::Vec3;
 
-/// What a piece is strained by.
+/// The triangles and folds that a piece is strained by.
 pub(super) struct Stored<'s> {
     pub(super) params: &'s ShellParams,
     pub(super) triangles: &'s [[u32; 3]],
