@@ -208,7 +208,7 @@ pub(crate) fn power_to_one(length: f32) -> f32 {
 /// for numbers so wide take kilobytes.
 #[must_use]
 pub(crate) const fn divide(number: u128, by: u64) -> (u64, u64) {
-    if cfg!(one_by_one) {
+    if cfg!(target_os = "none") {
         long_division(number, by)
     } else if by == 0 {
         (0, 0)

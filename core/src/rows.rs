@@ -11,7 +11,8 @@ use crate::lanes::widest;
 use crate::math::{along, max, scaled};
 use glam::Vec3;
 
-/// True if there may be vectors: chips without an operating system are spared the code, and work number by number.
+/// True if there may be vectors: chips without an operating system, which are spared the code, and programs without optimisation work number by
+/// number.
 pub(crate) const BLOCKS: bool = !cfg!(one_by_one);
 
 /// `out` = `base` + `h` × `rate`, row by row.
@@ -201,7 +202,7 @@ mod tests {
         for n in 0..40 {
             let mut column = std::vec![Vec3::new(f32::MAX, -f32::MAX, -0.0); n];
             let good_ones = std::vec![Vec3::new(-1.5, 0.0, 1e30); n];
-            assert_eq!(farthest_of_finite(&good_ones, &good_ones), (if n > 0 { 1e30 } else { 0.0 }, true));
+            assert_eq!(farthest_of_finite(&good_ones, &good_ones), (if n > 0 { 1e30 } else { 0.0 }, BLOCKS));
             assert!(are_finite(&column));
             assert_eq!(farthest(&column), if n > 0 { f32::MAX } else { 0.0 });
             for (i, bad) in (0..3 * n).zip([f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().cycle())

@@ -20,7 +20,7 @@ use crate::shape::{Aabb, Face, Facing, Hulls, Many, Marks};
 use crate::time::Time;
 use glam::Vec3;
 
-/// True where what faces one flat wall alone is followed by code of its own: chips are spared that.
+/// True where what faces one flat wall alone is followed by code of its own: chips, and programs without optimisation, are spared that.
 const SHORT_WAY: bool = !cfg!(one_by_one);
 
 /// Everything.

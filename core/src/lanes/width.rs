@@ -10,5 +10,5 @@ pub(crate) const PARTS: usize = 2;
 /// and so near that its square is a number.
 pub(crate) const NOWHERE: f32 = 1e19;
 
-/// The number that goes side by side where eight may: on chips, where lanes would be taken one after the other, one.
+/// The number that goes side by side where eight may: one on chips, where lanes would be taken one after the other, and without optimisation.
 pub(crate) const ABREAST: usize = if cfg!(one_by_one) { 1 } else { LANES };

@@ -11,7 +11,8 @@ use crate::rows::are_finite;
 use crate::time::Time;
 use glam::Vec3;
 
-/// True if there may be a cache that a few rows fit into: chips without an operating system are spared the code.
+/// True if there may be a cache that a few rows fit into: chips without an operating system are spared the code, and programs without optimisation
+/// the stack of its kernels.
 pub(crate) const TILED: bool = !cfg!(one_by_one);
 
 /// The number, instead of an emitter's, of those that are put in without one.

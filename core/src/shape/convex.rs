@@ -151,7 +151,7 @@ macro_rules! convex_collider {
                 crate::shape::convex::ball_contacts(self, center, reach, visit);
             }
             fn may_touch(&self, bounds: &crate::shape::Aabb) -> bool {
-                crate::shape::Surface::bounds(self).overlaps(bounds)
+                crate::shape::Surface::bounds(self).with_slack().overlaps(bounds)
             }
             fn mark_near(&self, hulls: &crate::shape::Hulls, marks: &mut crate::shape::Marks) {
                 hulls.near_box(&crate::shape::Surface::bounds(self), marks);

@@ -56,7 +56,7 @@ impl Surface for Disc {
 
 impl Collider for Disc {
     fn may_touch(&self, bounds: &Aabb) -> bool {
-        self.bounds().overlaps(bounds)
+        self.bounds().with_slack().overlaps(bounds)
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {

@@ -367,7 +367,7 @@ impl Collider for HeightField<'_> {
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
-        self.bounds.overlaps(bounds)
+        self.bounds.with_slack().overlaps(bounds)
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {

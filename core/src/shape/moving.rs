@@ -152,7 +152,7 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
-        if self.motion.is_none() { self.collider.may_touch(bounds) } else { self.reach.overlaps(bounds) }
+        if self.motion.is_none() { self.collider.may_touch(bounds) } else { self.reach.with_slack().overlaps(bounds) }
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {

@@ -86,7 +86,7 @@ impl<C: Mapped> Collider for Placed<C> {
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
         // Its own answer is the sharper one: of a plane, say.
-        if self.maps.is_none() { self.collider.may_touch(bounds) } else { self.bounds.overlaps(bounds) }
+        if self.maps.is_none() { self.collider.may_touch(bounds) } else { self.bounds.with_slack().overlaps(bounds) }
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {

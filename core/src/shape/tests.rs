@@ -60,6 +60,16 @@ fn bounds_hold_every_sample_tightly() {
     }
 }
 
+/// The rounding of a hit is that of its shape's size, however near to zero the box of that ends.
+#[test]
+fn boxes_that_end_at_zero_have_room_for_rounding() {
+    let cylinder = Cylinder { center: Vec3::new(0.3, -0.2, 0.5), radius: 0.5, height: 1.2 };
+    let (from, to) =
+        (Vec3::new(0.135_232_6, 0.272_200_17, -0.057_922_892), Vec3::new(0.3, 0.272_200_17, -0.057_922_892));
+    let segment = Segment { radius: 0.057_922_374, ..Segment::new(from, to) };
+    assert!(cylinder.first_hit(&segment).is_some() && cylinder.may_touch(&segment.bounds()));
+}
+
 proptest! {
     /// A path's hit lies on the surface, faces the start, and the way to it is free.
     #[test]

@@ -78,7 +78,7 @@ impl Surface for Triangle {
 
 impl Collider for Triangle {
     fn may_touch(&self, bounds: &Aabb) -> bool {
-        self.bounds().overlaps(bounds)
+        self.bounds().with_slack().overlaps(bounds)
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {

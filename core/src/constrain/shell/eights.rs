@@ -6,7 +6,8 @@ pub(super) use crate::lanes::gathered;
 use crate::lanes::{Eight, LANES};
 use glam::Vec3;
 
-/// Chips without an operating system go one by one: what is written for eight would be in their flash besides.
+/// Chips without an operating system go one by one, as what is written for eight would be in their flash besides, and so do programs without
+/// optimisation.
 pub(super) const WIDE: bool = cfg!(not(one_by_one));
 
 /// One number of each of eight structs, side by side.
