@@ -24,35 +24,43 @@ pub fn cloud(n: u32) -> Vec<Particle> {
     (0..n).map(particle).collect()
 }
 
-/// A system started with a scene, with room for `capacity` particles.
+/// A system started with a scene, with room for `capacity` particles, in memory as the program and the npm package take it: what all have in
+/// common is there once.
 ///
 /// # Panics
-/// If the scene does not fit, which the memory is made for.
+/// If there is no memory for it.
 #[must_use]
 pub fn started(scene: &Scene<'_>, capacity: usize) -> System<Heap> {
     let size = pointmass::Size { particles: capacity, ..scene.size() };
-    let mut system = System::with(Heap::new(size));
+    let heap = Heap::alike(size, &scene.likeness()).expect("there is memory for a bench");
+    let mut system = System::with(heap);
     system.start(scene, 1).expect("the memory was made for the scene");
     system
+}
+
+/// A circle of 10 cm at such a height \[m\] that births lead up from.
+fn nozzle(height: f32) -> Shape<Mesh<'static>> {
+    Shape::Circle(Disc { center: Vec3::Y * height, normal: Vec3::Y, radius: 0.1 })
 }
 
 /// A jet that holds about `n` drops in the air, each for 2 s.
 #[must_use]
 pub fn jet(n: f32) -> Emitter<Shape<Mesh<'static>>> {
-    let nozzle = Shape::Circle(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 });
     Emitter {
         speed: Varied { mean: 6.0, half_width: 1.0 },
         spread: Spread::Uniform(0.3),
         drag: Varied::exactly(0.1),
         lifetime: Varied::exactly(2.0),
-        ..Emitter::new(nozzle, n / 2.0)
+        ..Emitter::new(nozzle(1.0), n / 2.0)
     }
 }
 
-/// The same that leave at 10 m/s and live for 3 to 5 s, long enough to bounce off the ground and lie on it: about `n` at once.
+/// The same that leave at 10 m/s, higher up, and live for 3 to 5 s, long enough to bounce off the ground and lie on it: about `n` at once, a tenth
+/// of whom touch the ground in a step of [`FRAME`].
 #[must_use]
 pub fn high_jet(n: f32) -> Emitter<Shape<Mesh<'static>>> {
     Emitter {
+        shape: nozzle(2.25),
         speed: Varied { mean: 10.0, half_width: 1.0 },
         drag: Varied::exactly(0.2),
         elasticity: Varied::exactly(0.5),

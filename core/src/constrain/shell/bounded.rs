@@ -132,10 +132,10 @@ impl Solver<'_> {
     /// the sub-step began, and what forces have done on its way. A solution along the directions of the beginning makes more of triangles that are pressed
     /// far. Bending is asked for only where what is in the plane of triangles, which costs little to tell, comes to too much.
     fn act_on_walls(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>) {
-        let strained = self.stored(piece).stretched(bodies.before[0]);
         self.act(bodies, piece.members.iter().map(|&number| number as usize));
         let given = self.given(bodies, piece);
-        let now = self.moving(bodies, piece) + self.stored(piece).stretched(bodies.position);
+        let [strained, now] = self.stored(piece).stretched_at([bodies.before[0], bodies.position]);
+        let now = self.moving(bodies, piece) + now;
         if now > (given.moved + strained) * (1.0 + EVEN) + given.work + given.unsure {
             let begun = given.moved + self.stored(piece).within(bodies.before[0]);
             let most = begun + given.unsure + self.rounding(bodies, piece);

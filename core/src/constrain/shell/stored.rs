@@ -42,6 +42,12 @@ impl Stored<'_> {
 
     /// The part of it that is in the plane of triangles \[J\].
     pub(super) fn stretched(&self, places: &[Vec3]) -> f32 {
+        let [energy] = self.stretched_at([places]);
+        energy
+    }
+
+    /// The same for all in several places, in one pass over the triangles.
+    pub(super) fn stretched_at<const N: usize>(&self, places: [&[Vec3]; N]) -> [f32; N] {
         lanes::run(Stretched { stored: self, places })
     }
 
@@ -61,43 +67,47 @@ impl Stored<'_> {
     }
 }
 
-/// The energy that triangles are stretched and sheared by, eight side by side.
-struct Stretched<'a, 's> {
+/// The energies that triangles are stretched and sheared by in several places, eight triangles side by side.
+struct Stretched<'a, 's, const N: usize> {
     stored: &'a Stored<'s>,
-    places: &'a [Vec3],
+    places: [&'a [Vec3]; N],
 }
 
-impl Kernel for Stretched<'_, '_> {
-    type Output = f32;
+impl<const N: usize> Kernel for Stretched<'_, '_, N> {
+    type Output = [f32; N];
 
     #[inline(always)]
-    fn run<F: Eight>(self, like: F) -> f32 {
-        let mut sums = [0.0; LANES];
+    fn run<F: Eight>(self, like: F) -> [f32; N] {
+        let mut sums = [[0.0; LANES]; N];
         for triangles in self.stored.piece.triangles.chunks(LANES) {
             let eight = if WIDE { self.eight(like, triangles) } else { None };
             if let Some(energies) = eight {
-                sums = (like.of(sums) + energies).to_array();
+                for (sums, energies) in sums.iter_mut().zip(energies) {
+                    *sums = (like.of(*sums) + energies).to_array();
+                }
             } else {
-                for (sum, &triangle) in sums.iter_mut().zip(triangles) {
-                    *sum += self.one(triangle as usize);
+                for (sums, places) in sums.iter_mut().zip(self.places) {
+                    for (sum, &triangle) in sums.iter_mut().zip(triangles) {
+                        *sum += self.one(places, triangle as usize);
+                    }
                 }
             }
         }
-        sums.iter().sum()
+        sums.map(|sums| sums.iter().sum())
     }
 }
 
-impl Stretched<'_, '_> {
-    /// The energy of one, if its corners are there.
-    fn one(&self, triangle: usize) -> f32 {
+impl<const N: usize> Stretched<'_, '_, N> {
+    /// The energy of one in such places, if its corners are there.
+    fn one(&self, places: &[Vec3], triangle: usize) -> f32 {
         let Stored { params, triangles, cells, rows, .. } = self.stored;
-        let found = at(self.places, rows, triangles[triangle]);
+        let found = at(places, rows, triangles[triangle]);
         found.map_or(0.0, |[a, b, c]| cells[triangle].energy(params, [b - a, c - a]))
     }
 
     /// The energies of eight by the operations of one; none, if there are fewer or one of their corners is not there.
     #[inline(always)]
-    fn eight<F: Eight>(&self, like: F, numbers: &[u32]) -> Option<F> {
+    fn eight<F: Eight>(&self, like: F, numbers: &[u32]) -> Option<[F; N]> {
         let Stored { params, triangles, cells, rows, .. } = self.stored;
         let numbers: &[u32; LANES] = numbers.try_into().ok()?;
         let (mut corners, mut at) = ([[NOBODY; 3]; LANES], [Cell::NONE; LANES]);
@@ -106,11 +116,14 @@ impl Stretched<'_, '_> {
             *corners = [*rows.get(a as usize)?, *rows.get(b as usize)?, *rows.get(c as usize)?];
             *at = *cells.get(number as usize)?;
         }
-        let [a, b, c] = gathered(like, self.places, &corners)?;
-        let (inverse, area) = at_rest(like, &at);
-        let strain = green(like, deform(inverse, [a, b - a, c - a]));
-        let [warp, weft, shear] = stress(params, area, strain);
-        Some(like.all(0.5) * (warp * strain[0] + weft * strain[1] + shear * strain[2]))
+        let ((inverse, area), mut energies) = (at_rest(like, &at), [like.all(0.0); N]);
+        for (energy, places) in energies.iter_mut().zip(self.places) {
+            let [a, b, c] = gathered(like, places, &corners)?;
+            let strain = green(like, deform(inverse, [a, b - a, c - a]));
+            let [warp, weft, shear] = stress(params, area, strain);
+            *energy = like.all(0.5) * (warp * strain[0] + weft * strain[1] + shear * strain[2]);
+        }
+        Some(energies)
     }
 }
 
