@@ -2,9 +2,10 @@
 //! pointmass, and by rapier3d's soft bodies in the same run:
 //! `cargo run --release -p pointmass-bench --features rapier --example cloth -- [CELLS] [FRAMES] [on|off] [fall|hang] [SUBSTEPS] [STRETCH] [WHO] [ASIDE]`.
 //!
-//! It prints the time of a frame, and the largest strain of an edge along warp or weft in the second half; of pointmass what happened and the hash as well, so that
-//! callgrind can count its instructions. STRETCH is the stiffness \[N/m\]; WHO is `ours`, `rapier`, or the numbers of iterations and the frequency of
-//! edges that rapier3d is to take, as `20,1000`; ASIDE is how far beside the ball's middle what falls begins \[m\].
+//! It prints the time of a frame, and the largest strain of an edge along warp or weft in the second half; of pointmass what happened and the hash as well.
+//! STRETCH is the stiffness \[N/m\]; WHO is `ours`, for pointmass alone, so that callgrind can count its instructions, `rapier`, or the numbers of iterations
+//! and the frequency of edges that rapier3d is to take, as `20,1000`: then both go through a frame in turns; ASIDE is how far beside the ball's middle what
+//! falls begins \[m\].
 
 use pointmass::constrain::{SheetContacts, Shell, ShellParams};
 use pointmass::shape::{Plane, Sphere};
@@ -47,12 +48,19 @@ fn main() {
         aside: arguments.get(7).and_then(|text| text.parse().ok()).unwrap_or(0.0),
     };
     match arguments.get(6).map(String::as_str) {
-        None | Some("ours") => ours(&case),
-        Some(who) => rapier(&case, who),
+        None | Some("ours") => run(&case, None),
+        Some(who) => run(&case, rapier(&case, who)),
     }
 }
 
-fn ours(case: &Case) {
+/// Somebody's cloth: who it is, and a step of a frame, which says how long it took and where all are.
+struct Cloth<'a> {
+    name: String,
+    step: Box<dyn FnMut() -> (Duration, Vec<Vec3>) + 'a>,
+}
+
+/// Takes ours through the case, in turns with another, if there is one.
+fn run(case: &Case, other: Option<Cloth<'_>>) {
     let sheet = Sheet { corner: case.corner(), sides: [Vec3::X, Vec3::Z], cells: [case.cells; 2] };
     let count = (case.cells + 1) * (case.cells + 1);
     let thread = Particle { mass: MASS / count as f32, elasticity: 0.0, ..Particle::REST };
@@ -78,18 +86,20 @@ fn ours(case: &Case) {
     let mut system = System::with(Heap::new(Size { particles: count as usize, ..scene.size() }));
     system.start(&scene, 0).expect("the memory is made for the scene");
     let mut frame = 0;
-    measure(case, "pointmass", || {
+    let step = || {
         frame += 1;
         let begun = Instant::now();
         system.step_to(&scene, Time::frame(frame, 60));
         (begun.elapsed(), system.particles().position.to_vec())
-    });
+    };
+    let ours = Cloth { name: "pointmass".into(), step: Box::new(step) };
+    measure(case, [ours].into_iter().chain(other).collect());
     println!("{:?}", system.totals());
     println!("{:016x}", system.hash());
 }
 
 #[cfg(feature = "rapier")]
-fn rapier(case: &Case, who: &str) {
+fn rapier(case: &Case, who: &str) -> Option<Cloth<'static>> {
     use pointmass_peers::rapier_cloth;
     let mut numbers = who.split(',').map(str::parse::<f32>);
     let mut next = |usual: f32| numbers.next().and_then(Result::ok).unwrap_or(usual);
@@ -108,34 +118,43 @@ fn rapier(case: &Case, who: &str) {
         frequency,
         ball: (BALL.center.to_array(), BALL.radius),
     });
-    measure(case, &format!("rapier3d, {iterations} iterations, {frequency} Hz"), || {
+    let step = move || {
         let begun = Instant::now();
         sheet.step();
         (begun.elapsed(), sheet.places().into_iter().map(Vec3::from).collect())
-    });
+    };
+    Some(Cloth { name: format!("rapier3d, {iterations} iterations, {frequency} Hz"), step: Box::new(step) })
 }
 
 #[cfg(not(feature = "rapier"))]
-fn rapier(_: &Case, _: &str) {
+fn rapier(_: &Case, _: &str) -> Option<Cloth<'static>> {
     eprintln!("built without the feature rapier");
+    None
 }
 
-/// Goes through all frames, each of which says how long it took and where all are, and prints what came of it.
-fn measure(case: &Case, name: &str, mut step: impl FnMut() -> (Duration, Vec<Vec3>)) {
-    let (mut time, mut worst, mut lowest) = (Duration::ZERO, 0.0f32, 0.0);
+/// Goes through all frames with one after the other in turns, and prints what came of it, and what the first takes to what the second takes.
+fn measure(case: &Case, cloths: Vec<Cloth<'_>>) {
+    let mut all: Vec<_> = cloths.into_iter().map(|cloth| (cloth, Duration::ZERO, 0.0f32, 0.0)).collect();
     for frame in 0..case.frames {
-        let (took, places) = step();
-        time += took;
-        if 2 * frame >= case.frames {
-            worst = worst.max(strain(&places, case.cells as usize + 1));
+        for (cloth, time, worst, lowest) in &mut all {
+            let (took, places) = (cloth.step)();
+            *time += took;
+            if 2 * frame >= case.frames {
+                *worst = worst.max(strain(&places, case.cells as usize + 1));
+            }
+            *lowest = places.iter().map(|x| x.y).fold(f32::INFINITY, f32::min);
         }
-        lowest = places.iter().map(|x| x.y).fold(f32::INFINITY, f32::min);
     }
-    println!(
-        "{name}: {:.3} ms a frame, strain {:.2} % at the most, lowest at {lowest:.4} m",
-        time.as_secs_f64() * 1e3 / f64::from(case.frames.max(1)),
-        100.0 * worst
-    );
+    for (Cloth { name, .. }, time, worst, lowest) in &all {
+        println!(
+            "{name}: {:.3} ms a frame, strain {:.2} % at the most, lowest at {lowest:.4} m",
+            time.as_secs_f64() * 1e3 / f64::from(case.frames.max(1)),
+            100.0 * worst
+        );
+    }
+    if let [(_, ours, ..), (_, other, ..)] = &all[..] {
+        println!("{:.2} of its time", ours.as_secs_f64() / other.as_secs_f64());
+    }
 }
 
 /// The largest strain of an edge along warp or weft.

@@ -3,9 +3,9 @@
 //! The number of lanes and the order in which they are added are part of every sum's definition: they decide how it
 //! rounds, and so they are the same on every target, whatever its registers hold.
 
-#[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
+#[cfg(widest_found)]
 mod avx2;
-#[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
+#[cfg(widest_found)]
 mod avx512;
 mod eight;
 mod hits;

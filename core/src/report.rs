@@ -34,7 +34,7 @@ pub struct Report {
 pub struct Effort {
     /// Evaluations of all forces.
     pub evaluations: u64,
-    /// Times that neighbours were listed, to last for a while.
+    /// Times that neighbours were listed, to last for a while: how often hangs on the memory and on the target, what comes of it does not.
     pub lists: u64,
     /// Evaluations for which neighbours were looked up in an index, without a list.
     pub streamed: u64,

@@ -7,7 +7,7 @@ use super::{BroadKernel, Kernel};
 /// Runs a kernel in the widest registers that it is compiled for.
 #[inline(always)]
 pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
-    #[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
+    #[cfg(widest_found)]
     if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
         return fearless_simd::Simd::vectorize(
             avx2,
@@ -21,7 +21,7 @@ pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
 /// The same for one that keeps more numbers at hand than there are registers, where there may be twice as many of these.
 #[inline(always)]
 pub(crate) fn run_at_length<K: Kernel>(kernel: K) -> K::Output {
-    #[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
+    #[cfg(widest_found)]
     if let Some((avx512, avx2)) = fearless_simd::Level::new().as_avx512().zip(fearless_simd::Level::new().as_avx2()) {
         return fearless_simd::Simd::vectorize(
             avx512,
@@ -45,7 +45,7 @@ pub(crate) fn run_broad<K: BroadKernel>(kernel: K) -> K::Output {
     if NARROW.get() {
         return kernel.run(wide::f32x8::ZERO);
     }
-    #[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
+    #[cfg(widest_found)]
     match (fearless_simd::Level::new().as_avx512(), fearless_simd::Level::new().as_avx2()) {
         (Some(avx512), Some(avx2)) => {
             return fearless_simd::Simd::vectorize(
@@ -69,7 +69,7 @@ pub(crate) fn run_broad<K: BroadKernel>(kernel: K) -> K::Output {
 /// Calls a loop over columns that compilers make vectors of, compiled for the widest ones as well.
 #[inline(always)]
 pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
-    #[cfg(all(feature = "std", target_arch = "x86_64", not(one_by_one)))]
+    #[cfg(widest_found)]
     if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
         return fearless_simd::Simd::vectorize(avx2, f);
     }

@@ -1,4 +1,4 @@
-//! The step: create, age, in each sub-step advance and collide, snap, reap. Each is a file.
+//! The step: create, age, in each sub-step advance, snap and collide, reap. Each is a file, but collisions, which are a folder beside this one.
 
 mod advance;
 mod age;
