@@ -92,6 +92,12 @@ fn ten_seconds_after_its_fall_no_fine_cloth_has_passed_through_itself() {
     Cloth { touches: true, ..FALLS }.falls(600, 10);
 }
 
+#[test]
+#[ignore = "long: a quarter of an hour"]
+fn ten_seconds_after_its_fall_no_finest_cloth_has_passed_through_itself() {
+    Cloth { cells: 128, touches: true, ..FALLS }.falls(600, 20);
+}
+
 /// How far a cloth swings down from its corners does not hang on how fine it is.
 fn hang_alike(cells: &[u32], frames: u64) {
     let sags = cells.iter().map(|&cells| Cloth { cells, hangs: true, ..FALLS }.strain(frames).1);
