@@ -146,8 +146,7 @@ impl Solver<'_> {
     }
 
     /// Lets a piece go only as much of its way, but for how all together go along the walls, as takes no more energy than `most` \[J\] and what it is given
-    /// on that: if need be none, which is counted as capped, when it is strained as it was. Whoever was on this side of a flat wall that presses is so
-    /// then.
+    /// on that: if need be none, when it is strained as it was. Whoever was on this side of a flat wall that presses is so then.
     fn hold_short(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>, most: f32, given: &Given) {
         let (h, slide) = (bodies.substep.seconds(), self.along_walls(bodies, piece));
         let along = given.push.dot(slide);
@@ -167,7 +166,6 @@ impl Solver<'_> {
                 *if fits { &mut least } else { &mut far } = now;
             }
         }
-        bodies.report.effort.capped += u64::from(least == 0.0);
     }
 
     /// How the middle of a piece goes along all walls that press it: they take none of that if they are smooth.
