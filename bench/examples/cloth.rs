@@ -2,11 +2,10 @@
 //! pointmass, and by rapier3d's soft bodies in the same run:
 //! `cargo run --release -p pointmass-bench --features rapier --example cloth -- [CELLS] [FRAMES] [on|off] [fall|hang] [SUBSTEPS] [STRETCH] [WHO] [ASIDE]`.
 //!
-//! It prints the time of a frame, and the largest strain of an edge along warp or weft in the second half; of pointmass what happened and the hash as well.
-//! STRETCH is the stiffness \[N/m\]; WHO is `ours`, for pointmass alone, so that callgrind can count its instructions, `rapier`, or the numbers of iterations
-//! and the frequency of edges that rapier3d is to take, as `20,1000`, and `off` behind these if its cloth is not to touch itself whatever ours does: then both go
-//! through a frame in turns; ASIDE is how far beside the ball's middle what
-//! falls begins \[m\].
+//! It prints the time of a frame, and the largest strain of an edge along warp or weft in the second half; of pointmass what happened and the hash
+//! as well. STRETCH is the stiffness \[N/m\]. WHO is `ours`, for pointmass alone, so that callgrind can count its instructions; or `rapier`, or the
+//! numbers of iterations and the frequency of edges that rapier3d is to take, as `20,1000`, and `off` behind these if its cloth is not to touch itself
+//! whatever ours does: then both go through a frame in turns. ASIDE is how far beside the ball's middle what falls begins \[m\].
 
 use pointmass::constrain::{SheetContacts, Shell, ShellParams};
 use pointmass::shape::{Plane, Sphere};
