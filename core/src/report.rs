@@ -135,6 +135,12 @@ pub struct Caps {
     /// Solutions of shells after which edges were still shortened in the last of 64 passes: some may be left longer than their material lets them.
     /// No part of the system's hash.
     pub edges: u64,
+    /// Pieces of shells which walls press that stayed where they were in a sub-step, but for what walls let them do along these: wherever else they went,
+    /// they had more energy than there was. No part of the system's hash.
+    pub crushed: u64,
+    /// Triangles and folds of shells, triangles of limits of strain and edges of strands that have no extent where they begin, or no place, so that they
+    /// do nothing: each once, as they begin. No part of the system's hash.
+    pub degenerate: u64,
     /// A step could not be made since the scene needs more emitters, springs or work columns than the system has.
     pub insufficient_memory: u64,
 }
@@ -164,7 +170,7 @@ macro_rules! add_fields {
 }
 add_fields! {
     Died { lifetime sink density chance other nonfinite }
-    Caps { bounces chords springs contacts stalled graphs edges insufficient_memory }
+    Caps { bounces chords springs contacts stalled graphs edges crushed degenerate insufficient_memory }
     Effort { evaluations lists streamed all_pairs accepted rejected solves iterations capped }
 }
 
@@ -231,6 +237,8 @@ impl Report {
             stalled: 0,
             graphs: 0,
             edges: 0,
+            crushed: 0,
+            degenerate: 0,
             insufficient_memory: 0,
         },
     };
@@ -240,8 +248,7 @@ impl Report {
         let Self { initial, born, died, refused, hits, contacts, broken, caps, effort: _ } = *self;
         // The hash takes in `other` where there are any.
         let Died { lifetime, sink, density, chance, other: _, nonfinite } = died;
-        let Caps { bounces, chords, springs, contacts: near, stalled: _, graphs: _, edges: _, insufficient_memory } =
-            caps;
+        let Caps { bounces, chords, springs, contacts: near, insufficient_memory, .. } = caps;
         [
             initial,
             born,

@@ -59,6 +59,7 @@ mod shell_crushes;
 mod shell_meshes;
 mod sleep;
 mod soft_bodies;
+mod sound;
 mod springs;
 mod still;
 mod storage;

@@ -472,6 +472,31 @@ fn nothing_does_a_sheet_harm() {
     assert_eq!(strange.fault().map(|(name, _)| name), Some("warp"));
 }
 
+/// Triangles and folds that have no extent where they begin are counted, once: of a sheet squeezed into a line or a point all, none of any other; and not
+/// those that are not there.
+#[test]
+fn what_has_no_extent_is_counted() {
+    let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells: [5, 4] };
+    let plain = particles(&sheet, 0.2);
+    let all = (sheet.triangles().count() + sheet.hinges().count()) as u64;
+    let squeezed = |by: Vec3| plain.iter().map(|p| Particle { position: p.position * by, ..*p }).collect::<Vec<_>>();
+    for (start, more, right) in [
+        (plain.clone(), vec![], 0),
+        (plain.clone(), vec![[0, 0, 1], [2, 2, 2], [0, 1, 2], [0, 1, 999]], 3),
+        (squeezed(Vec3::X), vec![], all),
+        (squeezed(Vec3::ZERO), vec![], all),
+    ] {
+        for substeps in [1, 5] {
+            let mut shell = shell(&sheet, even(1e3, 1e-4, 1e-3));
+            shell.triangles.extend(&more);
+            let scene = Scene { start: &start, constraints: &shell, substeps, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            run(&mut system, &scene, 1.0 / 60.0, 3);
+            assert_eq!(system.totals().caps.degenerate, right, "{more:?}, {substeps} sub-steps");
+        }
+    }
+}
+
 /// A plate that falls in still air, and one held in a wind that carries it.
 #[test]
 fn a_level_plate_falls_at_its_terminal_speed() {

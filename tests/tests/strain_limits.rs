@@ -310,6 +310,15 @@ fn what_is_degenerate_dead_or_no_number_does_no_harm() {
             assert!(all.position.iter().chain(all.velocity).all(|x| x.is_finite()), "{case}");
             let least = start.len() - usize::from((3..=5).contains(&case));
             assert!(system.len() >= least, "{case}: {} are left of {}", system.len(), start.len());
+            let all = limits.triangles.len() as u64;
+            let degenerate = system.totals().caps.degenerate;
+            match case {
+                0 | 5 | 7 | 8 => assert_eq!(degenerate, 0, "{case}"),
+                1 | 2 => assert_eq!(degenerate, all, "{case}"),
+                // Two of those that are there name a corner twice.
+                6 => assert_eq!(degenerate, 2),
+                _ => {}
+            }
         }
     }
     let nan = limits(&sheet, StrainLimitParams { warp: Some([f32::NAN, 1.0]), shear: Some(f32::NAN), ..tight });

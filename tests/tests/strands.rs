@@ -487,6 +487,23 @@ fn strands_in_company_do_as_they_do_alone() {
     assert!(one.particles().position.iter().zip(&start).any(|(x, p)| x.distance(p.position) > 0.05));
 }
 
+/// Edges whose ends begin in one place are counted, once.
+#[test]
+fn edges_without_length_are_counted() {
+    let rod = Rod { root: Vec3::ZERO, along: Vec3::X, long: 1.0, edges: 10 };
+    let plain = rod.clamped(0.1);
+    let mut twice = plain.clone();
+    twice[7].position = plain[8].position;
+    twice[4].position = plain[3].position;
+    for (start, right) in [(plain, 0), (twice, 2)] {
+        let tuft = strand(&start, even(10.0, 1e-4, 1e-4, 1e-3));
+        let scene = Scene { start: &start, constraints: &tuft, substeps: 4, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        run(&mut system, &scene, 1.0 / 60.0, 3);
+        assert_eq!(system.totals().caps.degenerate, right);
+    }
+}
+
 #[test]
 fn nothing_does_a_strand_harm() {
     let rod = Rod { root: Vec3::ZERO, along: Vec3::X, long: 1.0, edges: 10 };

@@ -114,7 +114,18 @@ impl Summary {
         push_counts(&mut rows, "hits", &[("", *hits)]);
         push_counts(&mut rows, "contacts", &[("", *contacts)]);
         push_counts(&mut rows, "broken", &[("springs", *broken)]);
-        let Caps { bounces, chords, springs, contacts, stalled, graphs, edges, insufficient_memory } = *caps;
+        let Caps {
+            bounces,
+            chords,
+            springs,
+            contacts,
+            stalled,
+            graphs,
+            edges,
+            crushed,
+            degenerate,
+            insufficient_memory,
+        } = *caps;
         let caps = [
             ("paths with too many bounces", bounces),
             ("paths with too many chords", chords),
@@ -123,6 +134,8 @@ impl Summary {
             ("steps of particles lost to rounding", stalled),
             ("solutions of shells without graphs", graphs),
             ("solutions of shells that may have left edges too long", edges),
+            ("pieces of shells that walls crush and that stayed where they were", crushed),
+            ("triangles, folds and edges without extent, which do nothing", degenerate),
             ("steps that did not fit", insufficient_memory),
         ];
         push_counts(&mut rows, "bounds met", &caps);

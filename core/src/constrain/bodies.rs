@@ -212,6 +212,11 @@ impl Bodies<'_> {
     pub fn mark_touching(&mut self, row: usize) {
         self.marks[row] |= SHIFTED | TOUCHING;
     }
+
+    /// Tells whether it has been said of the particle in a row that it is kept from a surface, in this sub-step.
+    pub(crate) fn is_touching(&self, row: usize) -> bool {
+        self.marks[row] & TOUCHING != 0
+    }
 }
 
 /// Finds who is near whom, by the scene's index.

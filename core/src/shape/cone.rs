@@ -62,14 +62,21 @@ impl Cone {
     }
 
     /// Where the line runs inside the infinite cone below the apex, `offset` being measured from the apex.
+    ///
+    /// It is solved from the place on the line that is nearest to the apex where the cone is as wide as high, so that where the line grazes the
+    /// mantle close to the apex, little cancels, from however far off it comes.
     fn mantle(&self, offset: Vec3, step: Vec3) -> Option<Span> {
         let k = self.radius / self.height;
         let product = |a: Vec3, b: Vec3| a.x * b.x + a.z * b.z - k * k * a.y * b.y;
-        let (a, b, c) = (product(step, step), product(offset, step), product(offset, offset));
+        let along = |a: Vec3| a.x * step.x + a.z * step.z + k * k * a.y * step.y;
+        let middle = -along(offset) / along(step);
+        let middle = if middle.is_finite() { middle } else { 0.0 };
+        let nearest = offset + step * middle;
+        let (a, b, c) = (product(step, step), product(nearest, step), product(nearest, nearest));
         let square = b * b - a * c;
         // A line steeper than the mantle cannot miss it, though rounding may say so near the apex.
         let square = if a < 0.0 { max(square, f32::MIN_POSITIVE) } else { square };
-        let below = |t: f32| offset.y + step.y * t < 0.0;
+        let below = |t: f32| nearest.y + step.y * t < 0.0;
         let (near, far) = if !(square > 0.0) {
             return None;
         } else if a == 0.0 {
@@ -94,11 +101,11 @@ impl Cone {
             }
         };
         let normal = |t: f32| {
-            let p = offset + step * t;
+            let p = nearest + step * t;
             unit(Vec3::new(p.x, -k * k * p.y, p.z))
         };
         let at = |t: f32| if t.is_finite() { normal(t) } else { Vec3::ZERO };
-        Some(Span { enter: near, leave: far, enter_normal: at(near), leave_normal: at(far) })
+        Some(Span { enter: middle + near, leave: middle + far, enter_normal: at(near), leave_normal: at(far) })
     }
 }
 

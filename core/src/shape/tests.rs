@@ -70,6 +70,48 @@ fn boxes_that_end_at_zero_have_room_for_rounding() {
     assert!(cylinder.first_hit(&segment).is_some() && cylinder.may_touch(&segment.bounds()));
 }
 
+/// Where a line grazes a mantle near the apex, however far from where it begins, the hit is as near to the surface as its slack says.
+#[test]
+fn hits_that_graze_a_cone_near_its_apex_are_on_it() {
+    let sizes = [(0.6, 1.1), (1.0, 0.01), (0.01, 1.0), (300.0, 200.0), (2e-3, 3e-3), (1.0, 1.0)];
+    let mut hits = 0;
+    for (case, (radius, height)) in (0..).zip(sizes) {
+        let size = crate::math::max(radius, height);
+        let cone = Cone { center: Vec3::new(0.3, -0.2, 0.5) * size, radius, height };
+        let apex = cone.center + Vec3::Y * (0.5 * height);
+        for i in 0..20_000 {
+            let at = |number: u32| numbers(4 * (20_000 * case + i) + number).map(|x| 2.0 * x - 1.0);
+            // Through a place beside the mantle, the nearer the closer to the apex, along it but for little.
+            let ([turn, down, close], [across, along, off]) = (at(0), at(1));
+            let spot = cone.sample([1.0, 0.5 * turn + 0.5, 0.5 * (1.0 + down) * close * close]);
+            let up = crate::math::unit(apex - spot.point);
+            let place = spot.point + Vec3::from(at(2)) * (1e-3 * size * (close * off).abs());
+            let way = up.cross(spot.normal) * across + up * along + Vec3::from(at(3)) * (0.02 * off * off * off);
+            let segment = Segment::new(place - way * (3.0 * size), place + way * (3.0 * size));
+            let Some(hit) = cone.first_hit(&segment) else { continue };
+            let (point, middle) = (segment.at(hit.time).to_array(), cone.center.to_array());
+            let [x, y, z]: [f64; 3] = core::array::from_fn(|i| f64::from(point[i]) - f64::from(middle[i]));
+            let (radius, height) = (f64::from(radius), f64::from(height));
+            let mantle = (x.hypot(z) * height + (y - 0.5 * height) * radius) / radius.hypot(height);
+            let off = mantle.max(-0.5 * height - y).abs();
+            assert!(off <= f64::from(hit.slack), "{cone:?} {segment:?} {hit:?}: {off}");
+            hits += 1;
+        }
+    }
+    assert!(hits > 20_000, "{hits}");
+}
+
+/// As the path that a search for such has met.
+#[test]
+fn a_path_that_grazes_a_cone_from_far_hits_its_surface() {
+    let cone = Cone { center: Vec3::new(0.3, -0.2, 0.5), radius: 0.6, height: 1.1 };
+    let (from, to) =
+        (Vec3::new(-1.955_945, 0.761_271_06, -1.957_171_3), Vec3::new(0.841_585_16, 0.149_515_78, 1.071_395_8));
+    let hit = cone.first_hit(&Segment::new(from, to)).expect("it goes through the cone");
+    let point = from + (to - from) * hit.time;
+    assert!((cone.nearest(point) - point).length() <= hit.slack, "{hit:?}");
+}
+
 proptest! {
     /// A path's hit lies on the surface, faces the start, and the way to it is free.
     #[test]

@@ -32,7 +32,7 @@ const PARTICLES: usize = 34;
 const TRIANGLES: usize = 40;
 const HINGES: usize = 51;
 const SPRINGS: usize = 49;
-const COLUMNS: usize = 288;
+const COLUMNS: usize = 289;
 const KEPT: usize = 84;
 
 const _: () = assert!(points(FLAG) <= PARTICLES && points(STRIP) + points(COVER) == PARTICLES);

@@ -92,3 +92,51 @@ fn observers_are_told_once_of_what_lands_and_stays() {
         }
     }
 }
+
+/// A sheet that falls flat on a floor, whichever way that looks, and stays there: each of its particles is told of once, with and without a thickness.
+#[test]
+fn observers_are_told_once_of_each_particle_of_a_sheet_that_lands() {
+    let cases: [(f32, u32, Method, Vec3); 5] = [
+        (1.0, 1, Method::Symplectic, Vec3::Y),
+        (1.0, 5, Method::Verlet, Vec3::X),
+        (0.1, 10, Method::Rk4, Vec3::new(0.6, 0.0, -0.8)),
+        (10.0, 4, Method::Midpoint, Vec3::NEG_Y),
+        (1.0, 10, Method::Implicit, Vec3::new(0.0, 0.8, 0.6)),
+    ];
+    for ((size, substeps, method, normal), thick) in cases.into_iter().flat_map(|case| [(case, false), (case, true)]) {
+        let across = normal.any_orthonormal_vector();
+        let mut cloths = Cloths::default();
+        let sides = [across, normal.cross(across)].map(|side| side * (0.3 * size));
+        cloths.add(&square(normal * (0.2 * size), sides, 4), cotton(size), |x| x, Vec3::ZERO);
+        let thickness = 0.01 * size;
+        let constraints = (&cloths.shells[..], thick.then(|| cloths.contacts(thickness)));
+        let floor = Plane { point: Vec3::ZERO, normal };
+        let scene = Scene {
+            start: &cloths.start,
+            forces: &Gravity { acceleration: normal * (-G * size) },
+            colliders: &floor,
+            constraints: &constraints,
+            integrator: method.integrator(),
+            substeps,
+            ..Scene::EMPTY
+        };
+        let (mut system, mut blows) = (started(&scene, cloths.start.len(), 0), Blows::default());
+        let mut blind = started(&scene, cloths.start.len(), 0);
+        for frame in 1..=60 {
+            system.step_observed(&scene, Time::frame(frame, 60) - system.time(), &mut blows);
+            blind.step_to(&scene, Time::frame(frame, 60));
+        }
+        let name = format!("{size} m, {substeps}, {method}, {normal}, thick: {thick}");
+        assert_eq!(system.hash(), blind.hash(), "{name}");
+        let mut rows: Vec<_> = blows.0.iter().map(|blow| blow.row).collect();
+        rows.sort_unstable();
+        assert!(rows.iter().copied().eq(0..cloths.start.len()), "{name}: {rows:?}");
+        let fall = (2.0 * G * (if thick { 0.195 } else { 0.2f32 })).sqrt() * size;
+        for blow in &blows.0 {
+            assert!((blow.closing / fall - 1.0).abs() < 0.1 && blow.other.is_none(), "{name}: {blow:?}");
+            assert!(blow.normal.dot(normal) > 0.999 && blow.before.dot(normal) < -0.9 * fall, "{name}: {blow:?}");
+            assert!(blow.after.length() < 0.1 * fall && blow.surface == Vec3::ZERO, "{name}: {blow:?}");
+            assert_eq!(blow.mass, cloths.start[blow.row].mass, "{name}");
+        }
+    }
+}

@@ -1,9 +1,10 @@
 //! Telling whoever watches of what comes together.
 
 use super::super::Bodies;
+use super::super::contacts::closing;
 use super::contact::Contact;
 use super::lists::Kept;
-use crate::math::{dot, max};
+use crate::math::{dot, max, min};
 use crate::observe::Impact;
 use crate::particles::Id;
 use glam::Vec3;
@@ -28,19 +29,19 @@ pub(super) fn tell(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
     for surface in kept.surfaces[..surfaces].iter().filter(|surface| surface.touch.pressed() > 0.0) {
         let i = surface.particle as usize;
         let along = |v: Vec3| dot(v - surface.velocity, surface.normal);
-        let ends = [along(bodies.before[1][kept.rows[i] as usize]), along(kept.pushed[i])];
-        if let Some(closing) = closing(ends, bodies.substep.count) {
+        let row = kept.rows[i] as usize;
+        let mut ends = [along(bodies.before[1][row]), along(kept.pushed[i])];
+        let mut least = 0.0;
+        if bodies.is_touching(row) {
+            // What a shell's wall has stopped has been told of by that, unless it is another face that stops it, which the wall has not slowed it toward.
+            ends = [max(ends[0], ends[1]), min(ends[0], ends[1])];
+            least = 0.5;
+        }
+        let is_own = |closing: &f32| surface.touch.pressed() >= least * closing;
+        if let Some(closing) = closing(ends, bodies.substep.count).filter(is_own) {
             met(kept, bodies, (i, None, surface.normal), (closing, surface.velocity));
         }
     }
-}
-
-/// How fast two came together that parted at the first speed before forces pressed them, and at the second one then \[m/s\]; none, if that is no more
-/// than forces give what rests in a step of so many sub-steps.
-fn closing([begun, ended]: [f32; 2], substeps: u32) -> Option<f32> {
-    let rests = substeps as f32 * max(begun - ended, 0.0);
-    let closing = max(-begun, -ended);
-    (closing > rests && closing < f32::INFINITY).then_some(closing)
 }
 
 /// The corner of each side that has the largest share in the place that touches.

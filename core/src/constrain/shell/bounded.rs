@@ -166,6 +166,7 @@ impl Solver<'_> {
                 *if fits { &mut least } else { &mut far } = now;
             }
         }
+        bodies.report.caps.crushed += u64::from(least == 0.0);
     }
 
     /// How the middle of a piece goes along all walls that press it: they take none of that if they are smooth.

@@ -74,7 +74,9 @@ use words::structs;
 /// the elasticity of its hits gives back: what would be too much is taken of its way, but for how all of it goes along smooth walls. What is fixed
 /// somewhere, or pressed by what moves, has no such bound. That
 /// holds for each piece that hangs together by triangles and folds, from the beginning or when it has been torn: none takes what another has. In a
-/// periodic room a piece has to be smaller than half a side for that. Whoever is fixed stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing.
+/// periodic room a piece has to be smaller than half a side for that. Whoever is fixed stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing, and is counted in [`Caps`](crate::Caps).
+///
+/// [`Observer`](crate::Observer)s are told of particles that come together with the scenery ([`touched`](crate::Observer::touched)), once, as that begins.
 ///
 /// ```
 /// use pointmass::constrain::{Shell, ShellParams};
@@ -182,7 +184,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
-    fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
+    fn learn(&self, bodies: &mut Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
         let (Rest { cells, bends, graphs, links, plate, .. }, room) = (self.rest(kept), Room::of(self.counts()));
         mesh::make(&room, self.triangles.as_ref(), graphs, work);
         let all = Graph::all(graphs);
@@ -198,9 +200,13 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
             let row = bodies.row_of_start(*self.particles.as_ref().get(corner as usize)?)?;
             Some(bodies.position[row])
         };
+        let mut degenerate = 0;
         for (&corners, cell) in self.triangles.as_ref().iter().zip(&mut *cells) {
-            let [a, b, c] = corners.map(place);
-            *cell = a.zip(b).zip(c).map_or(Cell::NONE, |((a, b), c)| Cell::at_rest([b - a, c - a], self.warp));
+            *cell = Cell::NONE;
+            if let [Some(a), Some(b), Some(c)] = corners.map(place) {
+                *cell = Cell::at_rest([b - a, c - a], self.warp);
+                degenerate += u64::from(cell.area == 0.0);
+            }
         }
         for (hinge, bend) in self.hinges.as_ref().iter().zip(bends) {
             let triangles = hinge.faces.map(|face| self.triangles.as_ref().get(face as usize));
@@ -210,7 +216,9 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
             };
             let signs = [hinge.sign(*first), -hinge.sign(*second)];
             *bend = RestFold::at_rest([b - a, c - a, d - a], self.warp, signs);
+            degenerate += u64::from(!bend.acts());
         }
+        bodies.report.caps.degenerate += degenerate;
     }
 }
 

@@ -310,6 +310,7 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
             if let Some([a, b, c]) = self.rows(bodies, number) {
                 let x = &bodies.position;
                 *cell = Cell::at_rest([x[b] - x[a], x[c] - x[a]], self.warp);
+                bodies.report.caps.degenerate += u64::from(cell.area == 0.0);
             }
         }
     }

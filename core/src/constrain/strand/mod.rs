@@ -43,7 +43,7 @@ use piece::{EQUATIONS, Piece, Step, Writer, act};
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
 /// cannot turn about itself there; a single one is a hinge. Where a particle has died the strand is in two. Edges whose ends are in one place
-/// do nothing.
+/// do nothing, and are counted in [`Caps`](crate::Caps).
 ///
 /// ```
 /// use pointmass::constrain::{StrandParams, Strands};
@@ -143,10 +143,10 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     }
 
     /// Takes the shape at rest from where all are, at the first of all.
-    fn learn(&self, bodies: &Bodies<'_>, kept: &mut [u32]) {
-        let (joints, _) = self.kept(kept);
+    fn learn(&self, bodies: &mut Bodies<'_>, kept: &mut [u32]) {
+        let ((joints, _), mut degenerate) = (self.kept(kept), 0);
         for [first, last] in self.strands() {
-            let Some(joints) = joints.get_mut(first..last) else { return };
+            let Some(joints) = joints.get_mut(first..last) else { break };
             let place = |number: usize| {
                 let particle = self.particles.as_ref()[last - 1 - number];
                 bodies.row_of_start(particle).map_or(Vec3::ZERO, |row| bodies.position[row])
@@ -156,6 +156,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             let mut turn = None;
             for (number, joint) in joints[..edges].iter_mut().enumerate().rev() {
                 joint.length = length(way(number));
+                degenerate += u64::from(joint.length == 0.0);
                 let direction = way(number) / joint.length;
                 if direction.is_finite() {
                     turn = Some(turn.map_or_else(|| frame(direction, self.across), |turn| bring(turn, direction)));
@@ -169,6 +170,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 joints[number].rest = if rest.is_finite() { rest } else { Vec3::ZERO };
             }
         }
+        bodies.report.caps.degenerate += degenerate;
     }
 
     /// The row of a particle by its place in the list, if it lives and is somewhere.

@@ -4,6 +4,7 @@
 mod follow;
 mod settle;
 mod solve;
+mod tell;
 
 pub(super) use follow::follow;
 pub(super) use settle::settle;
@@ -54,8 +55,8 @@ pub(super) struct Wall {
     velocity: Vec3,
     free: f32,
     slack: f32,
-    /// The speed away from it before the material answers \[m/s\].
-    approach: f32,
+    /// The velocity of its particle before the material answers \[m/s\].
+    pushed: Vec3,
     /// How far off all scenery is, at the least \[m\].
     clear: f32,
     /// The part that it takes of the forces that are left \[kg m\], and what it brakes by for each metre that its particle slides \[kg\].
@@ -274,9 +275,9 @@ impl Wall {
         let row = self.row as usize;
         let (own, elasticity) = (bodies.material[row].checked_sub(1), bodies.elasticity[row]);
         let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
-        let approach = (bodies.velocity[row] - velocity).dot(normal);
+        let pushed = bodies.velocity[row];
         let (state, held, brake, tangent) = (NEAR, Vec3::ZERO, 0.0, TangentImpulse::of(Vec3::ZERO));
-        *self = Self { state, normal, offset, velocity, slack, approach, held, brake, stuck, touch, tangent, ..*self };
+        *self = Self { state, normal, offset, velocity, slack, pushed, held, brake, stuck, touch, tangent, ..*self };
     }
 
     /// Begins to press: with friction as if that held it.

@@ -1,5 +1,6 @@
 //! Velocities of what walls have pressed.
 
+use super::tell::tell;
 use super::{NONE, Wall};
 use crate::constrain::Bodies;
 use crate::constrain::contacts::bounce;
@@ -7,14 +8,14 @@ use crate::math::aside;
 
 /// Lets particles leave walls as fast as elasticity wants, and takes what friction can of their slip by all that has pressed.
 pub(in crate::constrain) fn settle(walls: &mut [Wall], bodies: &mut Bodies<'_>) {
+    let watched = bodies.is_watched();
     for wall in walls.iter_mut().filter(|wall| wall.state != NONE) {
         let (row, normal) = (wall.row as usize, wall.normal);
         let near = || bodies.position[row].dot(normal) < wall.offset + 0.5 * wall.slack;
         if !(wall.touch.pressed() > 0.0 || near()) {
             continue;
         }
-        let begun = (bodies.before[1][row] - wall.velocity).dot(normal);
-        let wanted = bounce(&bodies.substep, wall.touch.elasticity, [begun, wall.approach]);
+        let wanted = bounce(&bodies.substep, wall.touch.elasticity, wall.ends(bodies));
         let parting = (bodies.velocity[row] - wall.velocity).dot(normal);
         bodies.velocity[row] += normal * wall.touch.press(wanted, parting);
         if wall.tangent.acts(&wall.touch) {
@@ -24,6 +25,9 @@ pub(in crate::constrain) fn settle(walls: &mut [Wall], bodies: &mut Bodies<'_>) 
         if wall.touch.pressed() > 0.0 {
             bodies.report.hits += 1;
             bodies.mark_touching(row);
+            if watched {
+                tell(wall, bodies);
+            }
         }
     }
 }
