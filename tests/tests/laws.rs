@@ -35,6 +35,7 @@ mod implicit;
 #[path = "indices/main.rs"]
 mod indices;
 mod integrators;
+mod isotropic_sheets;
 mod ledger;
 mod likeness;
 mod lives;

@@ -145,7 +145,7 @@ pub struct Curl {
 }
 
 #[cfg(feature = "serde")]
-const fn usual_poisson() -> f32 {
+pub(super) const fn usual_poisson() -> f32 {
     0.35
 }
 
