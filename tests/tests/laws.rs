@@ -71,6 +71,7 @@ mod through_sides;
 mod tied_bodies;
 mod ties;
 mod tunnelling;
+mod turned_strands;
 #[path = "walls/main.rs"]
 mod walls;
 mod ways;

@@ -293,6 +293,7 @@ impl Tuft {
         if !(0.0..=0.5).contains(&self.poisson) {
             return refuse("poisson", &format!("has to be from 0 to 0.5, not {}", self.poisson));
         }
+        self.check_turning(at)?;
         self.air.map_or(Ok(()), |air| air.check(at, self.drag))?;
         if self.attach.is_some() && self.motion.is_some() {
             return refuse("attach", "say either attach or motion: what is attached goes where its body goes");
@@ -315,6 +316,19 @@ impl Tuft {
             Growth::On(field) => field.check(&format!("{at}.form.on"))?,
         }
         file.check_material(at, self.material)
+    }
+}
+
+impl Tuft {
+    fn check_turning(&self, at: &str) -> Checked {
+        let at = format!("{at}.turning");
+        finite(&at, &self.turning)?;
+        let is_loose = |&end: &usize| self.turning[end] != 0.0 && !self.held[end] && !self.is_clamped(end);
+        let Some(end) = [0, 1].into_iter().find(is_loose) else { return Ok(()) };
+        let name = ["root", "tip"][end];
+        let message =
+            format!("needs a {name} that is held, or clamped by two neighbours in fixed: else nothing is turned there");
+        Err(SceneError::value(at, message))
     }
 }
 
