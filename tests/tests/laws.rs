@@ -35,6 +35,7 @@ mod implicit;
 #[path = "indices/main.rs"]
 mod indices;
 mod integrators;
+mod isotropic_sheets;
 mod ledger;
 mod likeness;
 mod lives;
@@ -71,6 +72,7 @@ mod through_sides;
 mod tied_bodies;
 mod ties;
 mod tunnelling;
+mod turned_strands;
 #[path = "walls/main.rs"]
 mod walls;
 mod ways;

@@ -30,8 +30,7 @@ impl SceneFile {
                 zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
                 zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
             }
-            let is_shell = cloth.shell.is_some() || cloth.hung.is_some();
-            if !is_shell && [structural, shear, bend].iter().all(Option::is_none) {
+            if !cloth.is_shell() && [structural, shear, bend].iter().all(Option::is_none) {
                 return refuse(
                     "springs",
                     "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell",
@@ -188,14 +187,16 @@ impl StrandAir {
 impl Cloth {
     /// Checks what it weighs, what it is made of and the air around it.
     fn check_material(&self, at: &str) -> Result<(), SceneError> {
-        match self.density {
-            Some(_) if self.mass != 0.0 => {
-                return Err(SceneError::value(format!("{at}.density"), "say either density or mass"));
-            }
-            Some(density) => above_zero(&format!("{at}.density"), density)?,
-            None => above_zero(&format!("{at}.mass"), self.mass)?,
-        }
+        self.check_weight(at)?;
         self.check_hung(at)?;
+        if let Some(isotropic) = self.isotropic {
+            if self.shell.is_some() || self.hung.is_some() {
+                let message =
+                    "say one of isotropic, by its modulus, shell, by its stiffness, and hung, by what it does";
+                return Err(SceneError::value(format!("{at}.isotropic"), message));
+            }
+            isotropic.check(&format!("{at}.isotropic"))?;
+        }
         if let Some((field, message)) = self.shell.and_then(|params| params.fault()) {
             return Err(SceneError::value(format!("{at}.shell.{field}"), message));
         }
@@ -206,6 +207,26 @@ impl Cloth {
         let Some(Air { density, drag, lift, friction }) = self.air else { return Ok(()) };
         let numbers = [("density", density), ("drag", drag), ("lift", lift), ("friction", friction)];
         numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
+    }
+
+    fn check_weight(&self, at: &str) -> Checked {
+        let by_volume = self.isotropic.and_then(|isotropic| isotropic.density);
+        match self.density {
+            Some(_) if self.mass != 0.0 => {
+                Err(SceneError::value(format!("{at}.density"), "say either density or mass"))
+            }
+            _ if by_volume.is_some() && (self.density.is_some() || self.mass != 0.0) => {
+                let message = "in kg/m³, says what it weighs; say that, or the cloth's density, in kg/m², or its mass";
+                Err(SceneError::value(format!("{at}.isotropic.density"), message))
+            }
+            Some(density) => above_zero(&format!("{at}.density"), density),
+            None if by_volume.is_some() => Ok(()),
+            None if self.isotropic.is_some() && self.mass == 0.0 => {
+                let message = "is missing: say it, in kg/m³, or the cloth's density, in kg/m², or its mass";
+                Err(SceneError::value(format!("{at}.isotropic.density"), message))
+            }
+            None => above_zero(&format!("{at}.mass"), self.mass),
+        }
     }
 
     fn check_hung(&self, at: &str) -> Checked {
@@ -235,7 +256,7 @@ impl Cloth {
 
     fn check_limits(&self, at: &str) -> Result<(), SceneError> {
         let Some(params) = self.limits else { return Ok(()) };
-        if self.shell.is_some() || self.hung.is_some() {
+        if self.is_shell() {
             let message = "are those of cloth made of springs; a shell is as stiff as its own stretch and shear say";
             return Err(SceneError::value(format!("{at}.limits"), message));
         }
@@ -272,6 +293,7 @@ impl Tuft {
         if !(0.0..=0.5).contains(&self.poisson) {
             return refuse("poisson", &format!("has to be from 0 to 0.5, not {}", self.poisson));
         }
+        self.check_turning(at)?;
         self.air.map_or(Ok(()), |air| air.check(at, self.drag))?;
         if self.attach.is_some() && self.motion.is_some() {
             return refuse("attach", "say either attach or motion: what is attached goes where its body goes");
@@ -294,6 +316,19 @@ impl Tuft {
             Growth::On(field) => field.check(&format!("{at}.form.on"))?,
         }
         file.check_material(at, self.material)
+    }
+}
+
+impl Tuft {
+    fn check_turning(&self, at: &str) -> Checked {
+        let at = format!("{at}.turning");
+        finite(&at, &self.turning)?;
+        let is_loose = |&end: &usize| self.turning[end] != 0.0 && !self.held[end] && !self.is_clamped(end);
+        let Some(end) = [0, 1].into_iter().find(is_loose) else { return Ok(()) };
+        let name = ["root", "tip"][end];
+        let message =
+            format!("needs a {name} that is held, or clamped by two neighbours in fixed: else nothing is turned there");
+        Err(SceneError::value(at, message))
     }
 }
 

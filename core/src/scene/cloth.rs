@@ -1,5 +1,6 @@
 //! Sheets and meshes of particles in scene files: what holds them together, and what they are made into.
 
+use super::Isotropic;
 use crate::cloth::{ClothSprings, Sheet, mesh_hinges, mesh_springs};
 use crate::constrain::{ConstraintKind, SheetContacts, Shell, ShellParams, StrainLimitParams, StrainLimits};
 use crate::draw::Patch;
@@ -22,7 +23,8 @@ pub struct Cloth {
     /// The mass of all of it \[kg\], of which every particle has an equal share; in place of `density`.
     #[cfg_attr(feature = "serde", serde(default))]
     pub mass: f32,
-    /// Its mass for each square metre \[kg/m²\], of which particles have shares by the triangles around them; in place of `mass`.
+    /// Its mass for each square metre \[kg/m²\], of which particles have shares by the triangles around them; in place of `mass`. What is
+    /// `isotropic` may say that of a cubic metre there instead.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub density: Option<f32>,
     /// What it is made of, if it is a shell: its stiffness does not depend on the number of cells, nor on sub-steps.
@@ -31,6 +33,9 @@ pub struct Cloth {
     /// What it is made of, if it is a sheet, by how far it stretches where it hangs by its own weight; in place of `shell`, and with a `density`.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub hung: Option<Hung>,
+    /// What it is made of, if that is the same in all directions, by its Young's modulus; in place of `shell`, for sheets and meshes.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub isotropic: Option<Isotropic>,
     /// How thick it is \[m\]: it then touches itself, the other cloths that have a thickness, and the scenery, without passing through
     /// any. Where there are `boxes`, its particles are balls of that diameter, to them and to all `contacts`. Without a thickness only its
     /// particles meet the scenery, and it passes through boxes.
@@ -199,7 +204,8 @@ impl Cloth {
             }
             (Form::Mesh(_), None) => (Vec::new(), Vec::new()),
         };
-        let mass = if self.density.is_some() { 0.0 } else { self.mass / positions.len().max(1) as f32 };
+        let density = self.by_area();
+        let mass = if density.is_some() { 0.0 } else { self.mass / positions.len().max(1) as f32 };
         let like = Particle {
             mass,
             velocity: self.velocity,
@@ -210,9 +216,9 @@ impl Cloth {
             ..Particle::REST
         };
         let mut particles: Vec<_> = positions.into_iter().map(|position| Particle { position, ..like }).collect();
-        for corners in self.density.iter().flat_map(|_| self.triangles(mesh)) {
+        for corners in density.iter().flat_map(|_| self.triangles(mesh)) {
             let [a, b, c] = corners.map(|corner| particles.get(corner as usize).map_or(Vec3::ZERO, |p| p.position));
-            let third = self.density.unwrap_or(0.0) * length((b - a).cross(c - a)) / 6.0;
+            let third = density.unwrap_or(0.0) * length((b - a).cross(c - a)) / 6.0;
             for corner in corners {
                 if let Some(particle) = particles.get_mut(corner as usize) {
                     particle.mass += third;
@@ -225,6 +231,16 @@ impl Cloth {
             }
         }
         (particles, springs.into_iter().map(|spring| Spring { breaks_at: self.breaks_at, ..spring }).collect())
+    }
+
+    /// The mass of a square metre of it \[kg/m²\], if it says that.
+    pub(super) fn by_area(&self) -> Option<f32> {
+        self.density.or_else(|| self.isotropic?.by_area())
+    }
+
+    /// Tells whether it is a shell.
+    pub(super) fn is_shell(&self) -> bool {
+        self.shell.is_some() || self.hung.is_some() || self.isotropic.is_some()
     }
 
     /// Its triangles, by its particles counted from 0.
@@ -249,7 +265,7 @@ impl Cloth {
             let weight = |side: usize| self.density.map(|density| density * EARTH * length(sheet.sides[side]));
             Some([weight(0)? / hung_strain(stretch[0]), weight(1)? / hung_strain(stretch[1])])
         };
-        self.shell.or_else(|| {
+        self.shell.or_else(|| self.isotropic.map(Isotropic::params)).or_else(|| {
             let of = self.hung?;
             let [warp, weft] = stretch(of)?;
             let shear = of.shear * (0.5 * warp + 0.5 * weft);

@@ -32,6 +32,8 @@ mod files;
 #[cfg(feature = "alloc")]
 mod filling;
 mod inline;
+#[cfg(feature = "alloc")]
+mod isotropic;
 #[cfg(feature = "json")]
 mod json;
 #[cfg(feature = "alloc")]
@@ -85,6 +87,8 @@ pub use files::{Files, beside};
 #[cfg(feature = "alloc")]
 pub use filling::SoftForm;
 pub use inline::{InlineError, InlineScene};
+#[cfg(feature = "alloc")]
+pub use isotropic::Isotropic;
 #[cfg(feature = "alloc")]
 pub use material::{CurveBuf, LifeBuf, Material, ParticleShape, Sides, Sprite, VaryingBuf};
 #[cfg(feature = "alloc")]

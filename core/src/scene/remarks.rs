@@ -1,7 +1,7 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
 use super::{Growth, Response, SceneFile};
-use crate::constrain::ConstraintKind;
+use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::Friction;
 use crate::reap::ReaperKind;
@@ -68,6 +68,15 @@ impl SceneFile {
             let itself = (a == b).then(|| format!("it holds particle {a} to itself, so it does nothing"));
             add(format_args!("constraints[{i}].distance.ends"), itself);
         }
+        for (i, constraint) in self.constraints.iter().enumerate() {
+            let ConstraintKind::Strands(strands) = constraint else { continue };
+            let end = [0, 1].into_iter().find(|&end| self.is_idly_turned(strands, end));
+            let nothing = |end: usize| {
+                let name = ["root", "tip"][end];
+                format!("no {name} is held or clamped by two fixed neighbours, so nothing is turned there")
+            };
+            add(format_args!("constraints[{i}].strands.turning"), end.map(nothing));
+        }
         for (i, tuft) in self.strands.iter().enumerate() {
             let loose = tuft.motion.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
             let nothing = || "none of its points is fixed, so nothing follows it".into();
@@ -95,6 +104,22 @@ impl SceneFile {
             let point = || "a plane is infinite, so all are led to its one point".into();
             add(format_args!("goals[{i}].shape"), infinite.then(point));
         }
+    }
+}
+
+impl SceneFile {
+    /// Tells whether strands turn an end, root or tip, that is neither held nor clamped in any of them: one of the two particles there, of the file's
+    /// own, is not fixed.
+    fn is_idly_turned(&self, strands: &Strands<Vec<u32>, Vec<u32>>, end: usize) -> bool {
+        let is_free = |&at: &usize| {
+            let number = strands.particles.get(at).and_then(|&number| usize::try_from(number).ok());
+            number.and_then(|number| self.particles.get(number)).is_some_and(|particle| !particle.fixed)
+        };
+        let is_loose = |[first, last]: [usize; 2]| {
+            let edge = if end == 0 { [first, first + 1] } else { [last - 1, last.saturating_sub(2)] };
+            edge.iter().any(is_free)
+        };
+        strands.turning[end] != 0.0 && !strands.held[end] && strands.strands().all(is_loose)
     }
 }
 

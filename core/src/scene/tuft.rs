@@ -42,6 +42,13 @@ pub struct Tuft {
     /// The points of a curve that never move, by their number from 0; of strands that grow on a surface the roots never do.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub fixed: Vec<u32>,
+    /// True if the first and the last segment do not turn about themselves, though their ends are free to move.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub held: [bool; 2],
+    /// How fast the first and the last segment are turned about themselves \[rad/s\], right-handed about the direction from the root to the tip. It takes an
+    /// end that is `held`, or clamped by two neighbours that are fixed; of strands that grow on a surface the roots are.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub turning: [f32; 2],
     /// How the roots, and all that is fixed, move; without it they stay.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub motion: Option<MotionBuf>,
@@ -145,7 +152,7 @@ pub struct Curl {
 }
 
 #[cfg(feature = "serde")]
-const fn usual_poisson() -> f32 {
+pub(super) const fn usual_poisson() -> f32 {
     0.35
 }
 
@@ -214,10 +221,22 @@ impl Tuft {
         let all = (first..first + particles.len() as u32).collect();
         let led = |motion| ConstraintKind::Attach(Attach { particles: fixed.clone(), motion });
         let attached = self.motion.clone().map(led);
-        let strands_of = ConstraintKind::Strands(Strands::of(all, alloc::vec![points], params));
+        let bound = Strands { held: self.held, turning: self.turning, ..Strands::of(all, alloc::vec![points], params) };
+        let strands_of = ConstraintKind::Strands(bound);
         let width = if self.width > 0.0 { self.width } else { 2.0 * self.radius };
         let lock = Lock { first, points, count: strands.len() as u32, width };
         Grown { particles, constraints: attached.into_iter().chain([strands_of]).collect(), lock, roots: fixed }
+    }
+
+    /// Tells whether an end, the root or the tip, is clamped by two neighbours that are fixed.
+    pub(super) fn is_clamped(&self, end: usize) -> bool {
+        let is_fixed = |number: u32| self.fixed.contains(&number);
+        match (&self.form, end) {
+            _ if self.attach.is_some() => false,
+            (Growth::On(_), _) => end == 0,
+            (Growth::Curve(_), 0) => is_fixed(0) && is_fixed(1),
+            (Growth::Curve(_), _) => is_fixed(self.segments) && is_fixed(self.segments.saturating_sub(1)),
+        }
     }
 
     /// The push of the air on what it is made into: on all segments but those beneath the surface on which it grows.

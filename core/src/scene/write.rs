@@ -118,7 +118,7 @@ impl Writer {
                 ));
                 continue;
             }
-            let lost = if cloth.shell.is_some() || cloth.hung.is_some() { ", without its shell" } else { "" };
+            let lost = if cloth.is_shell() { ", without its shell" } else { "" };
             let lost = if cloth.thickness.is_some() { format!("{lost}, without its thickness") } else { lost.into() };
             let lost = if cloth.air.is_some() { format!("{lost}, without the air around it") } else { lost };
             self.warn(format!("cloths[{i}]: .scn has no cloths; it is written as particles and springs{lost}"));

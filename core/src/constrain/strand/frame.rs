@@ -1,7 +1,7 @@
 //! The material frames of edges, and how two of them that follow one another are bent and twisted.
 
 use crate::constrain::turn::Turn;
-use crate::math::{dot, length, sqrt};
+use crate::math::{dot, length, sin_cos, sqrt};
 use glam::{Mat3, Vec3};
 
 /// The cosine of how far an edge may turn in a sub-step to be pulled along the direction of the beginning: by 60°.
@@ -22,8 +22,8 @@ pub(super) struct Edge {
 
 impl Edge {
     /// The edge with these ways from end to end: now, less what its velocities make of it in a sub-step, and as the sub-step began, when
-    /// its frame was this one; none if it has no direction.
-    pub(super) fn of(kept: Turn, [now, back, before]: [Vec3; 3], embedded: bool) -> Option<Self> {
+    /// its frame was this one; none if it has no direction. Something may turn it about itself on its way.
+    pub(super) fn of(kept: Turn, [now, back, before]: [Vec3; 3], embedded: bool, spun: Option<Spin>) -> Option<Self> {
         let direction = |way: Vec3| {
             let far = length(way);
             (far > 0.0 && far < f32::INFINITY).then(|| (way / far, far))
@@ -34,7 +34,28 @@ impl Edge {
         let (along, middle) = direction(back).filter(|&(back, _)| dot(back, to) > COSINE).unwrap_or((to, far));
         let first = bring(kept, from);
         let second = bring(first, along);
+        let second = spun.map_or(second, |spin| spin.about(along).after(second));
         Some(Self { length: [far, middle, earlier], along, frame: [bring(second, to), second, first], embedded })
+    }
+}
+
+/// A rotation about an edge: the sine and the cosine of half its angle.
+#[derive(Clone, Copy)]
+pub(super) struct Spin([f32; 2]);
+
+impl Spin {
+    /// That by an angle \[rad\]; none by zero.
+    pub(super) fn by(angle: f32) -> Option<Self> {
+        (angle != 0.0).then(|| {
+            let (sin, cos) = sin_cos(0.5 * angle);
+            Self([sin, cos])
+        })
+    }
+
+    /// It, right-handed about a direction.
+    fn about(self, direction: Vec3) -> Turn {
+        let (Self([sin, cos]), Vec3 { x, y, z }) = (self, direction);
+        Turn([x * sin, y * sin, z * sin, cos])
     }
 }
 

@@ -6,6 +6,8 @@ mod frame;
 mod joint;
 mod params;
 mod piece;
+#[cfg(all(test, feature = "std"))]
+mod tests;
 
 pub use params::StrandParams;
 
@@ -42,7 +44,8 @@ use piece::{EQUATIONS, Piece, Step, Writer, act};
 /// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h. In a periodic room a free strand has to be shorter than half a side.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
-/// cannot turn about itself there; a single one is a hinge. Where a particle has died the strand is in two. Edges whose ends are in one place
+/// cannot turn about itself there, unless it is turned ([`turning`](Self::turning)); a single one is a hinge. What turns an end of a strand that nobody
+/// else holds gives it energy and angular momentum. Where a particle has died the strand is in two. Edges whose ends are in one place
 /// do nothing, and are counted in [`Caps`](crate::Caps).
 ///
 /// ```
@@ -87,6 +90,12 @@ pub struct Strands<P, L> {
     /// True if the first and the last edge do not turn about themselves, though their ends are free to move.
     #[cfg_attr(feature = "serde", serde(default))]
     pub held: [bool; 2],
+    /// How fast the first and the last edge are turned about themselves \[rad/s\], right-handed about the direction from the root to the tip: by a drill, a
+    /// winch, the hands that wind a rope. It counts at an end that is `held`, or clamped by two fixed neighbours, of which all that are fixed are turned.
+    /// What is turned at both ends with the same rate is not twisted. More than half a turn between two edges is less the other way round, so
+    /// for many turns it takes many edges, and less than half a turn in a sub-step.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub turning: [f32; 2],
 }
 
 /// Strands that are solved at once, where there are several.
@@ -96,7 +105,7 @@ impl<P, L> Strands<P, L> {
     /// Strands of round sections whose ends are free to turn.
     #[must_use]
     pub const fn of(particles: P, points: L, params: StrandParams) -> Self {
-        Self { particles, points, params, across: Vec3::ZERO, twist: 0.0, held: [false; 2] }
+        Self { particles, points, params, across: Vec3::ZERO, twist: 0.0, held: [false; 2], turning: [0.0; 2] }
     }
 }
 
@@ -109,6 +118,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             (self.points.as_ref().iter().any(|&points| points < 2), "points", "have to be two or more"),
             (!self.across.is_finite(), "across", "has to be finite"),
             (!self.twist.is_finite(), "twist", "has to be finite, in rad/m"),
+            (!self.turning.iter().all(|rate| rate.is_finite()), "turning", "has to be finite, in rad/s"),
         ];
         let wrong = faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message));
         wrong.or_else(|| self.params.fault())
@@ -192,7 +202,11 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 _ => piece.first = joint + 1,
             }
         }
-        piece.held = [self.held[1] && piece.first == first, self.held[0] && piece.first + piece.count == last];
+        let ends = [piece.first == first, piece.first + piece.count == last];
+        piece.held = [self.held[1] && ends[0], self.held[0] && ends[1]];
+        // From the tip to the root.
+        let [root, tip] = self.turning.map(|rate| -rate);
+        piece.turning = [if ends[0] { tip } else { 0.0 }, if ends[1] { root } else { 0.0 }];
         piece
     }
 
@@ -212,7 +226,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let mut piece = self.piece(bodies, strand, from, rows_of);
                 from = piece.first + piece.count;
                 let is_free = |&row: &u32| bodies.inverse_mass[row as usize] > 0.0;
-                piece.is_free = rows_of[..piece.count].iter().all(is_free);
+                piece.is_free = !piece.is_turned() && rows_of[..piece.count].iter().all(is_free);
                 piece.whole = (piece.count == strand[1] - strand[0]).then_some(number);
                 if let Some(mut purse) = Purse::of(purses, number).filter(|_| !piece.is_free || piece.whole.is_none()) {
                     purse.forget();
@@ -267,7 +281,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         for (lane, piece) in pieces.iter().enumerate() {
             let rows = &rows[lane * longest..][..piece.count];
             let joints = &mut joints[piece.first..][..piece.count];
-            let is_solved = act(&band, lane, bodies, rows, joints, masses[lane]);
+            let is_solved = act((&band, lane), piece, bodies, rows, joints, masses[lane]);
             bodies.report.effort.solved(1, 0.0, !is_solved);
             if let (Some(limits), Some(mut purse)) = (limits[lane], piece.purse(purses, &mut [0; PURSE])) {
                 let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };

@@ -2,7 +2,7 @@
 
 use super::band::Band;
 use super::bounded::Purse;
-use super::frame::{Edge, bring, gradients, strain};
+use super::frame::{Edge, Spin, bring, gradients, strain};
 use super::joint::Joint;
 use super::params::StrandParams;
 use crate::constrain::Bodies;
@@ -39,13 +39,20 @@ pub(super) struct Piece {
     pub(super) count: usize,
     /// True if its first and its last edge do not turn about themselves.
     pub(super) held: [bool; 2],
+    /// How fast these are turned about themselves \[rad/s\], right-handed about their direction from the tip to the root, if they are held or clamped.
+    pub(super) turning: [f32; 2],
     /// The number of its strand, if it is the whole of that.
     pub(super) whole: Option<usize>,
-    /// True if nothing holds it.
+    /// True if nothing holds it, and nothing turns its ends.
     pub(super) is_free: bool,
 }
 
 impl Piece {
+    /// Tells whether something turns an end of it that is held.
+    pub(super) fn is_turned(&self) -> bool {
+        self.held.into_iter().zip(self.turning).any(|(is_held, rate)| is_held && rate != 0.0)
+    }
+
     /// What is kept of its strand, if nothing holds it: of a part of one nothing is kept, which has words of its own while it is solved.
     pub(super) fn purse<'m>(&self, purses: &'m mut [u32], own: &'m mut [u32]) -> Option<Purse<'m>> {
         if !self.is_free {
@@ -78,6 +85,21 @@ impl Step<'_> {
     /// How far something of a stiffness gives way, × 1/h².
     fn softness(&self, stiffness: f32) -> f32 {
         1.0 / (stiffness * (self.h * self.h) * (1.0 + self.lag()))
+    }
+}
+
+/// How many edges from the tip on, and from the root, are turned about themselves, and how fast \[rad/s\].
+#[derive(Clone, Copy, Default)]
+struct Driven {
+    edges: [usize; 2],
+    rates: [f32; 2],
+}
+
+impl Driven {
+    /// How fast an edge is turned which so many are before, toward the tip and toward the root \[rad/s\].
+    fn rate(&self, before: [usize; 2]) -> f32 {
+        let of = |end: usize| if before[end] < self.edges[end] { self.rates[end] } else { 0.0 };
+        of(0) + of(1)
     }
 }
 
@@ -115,16 +137,30 @@ where
     /// Writes all equations of a piece, and leaves in its joints the frames of its edges where the method has moved them.
     pub(super) fn write(&mut self, piece: &Piece, joints: &mut [Joint]) {
         let mut last: Option<Edge> = None;
+        let driven = self.driven(piece);
         for number in 0..piece.count {
             self.inertia(number);
             let is_held = |edge: usize| edge == 0 && piece.held[0] || edge + 2 == piece.count && piece.held[1];
-            let edge = if number + 1 < piece.count { self.edge(number, joints, is_held(number)) } else { None };
+            let spun = || Spin::by(self.step.h * driven.rate([number, piece.count - 2 - number]));
+            let edge = if number + 1 < piece.count { self.edge(number, joints, is_held(number), spun()) } else { None };
             if let (Some(first), Some(second)) = (&last, &edge) {
                 let is_held = [number - 1, number].map(is_held);
                 self.bend(number, [first, second], &joints[number - 1..=number], is_held);
             }
             last = edge;
         }
+    }
+
+    /// Which edges at the ends of a piece are turned about themselves: the first and the last if they are held, and all that is clamped there.
+    fn driven(&self, piece: &Piece) -> Driven {
+        if piece.turning == [0.0; 2] {
+            return Driven::default();
+        }
+        let is_fixed = |&number: &usize| !(self.point(number).weight > 0.0);
+        let fixed =
+            [(0..piece.count).take_while(is_fixed).count(), (0..piece.count).rev().take_while(is_fixed).count()];
+        let edges = [0, 1].map(|end| fixed[end].saturating_sub(1).max(usize::from(piece.held[end])));
+        Driven { edges, rates: piece.turning }
     }
 
     /// The masses of a point.
@@ -138,15 +174,15 @@ where
         }
     }
 
-    /// The edge from a point to the next: the pull in it, and what that resists to being moved across.
-    fn edge(&mut self, number: usize, joints: &mut [Joint], is_held: bool) -> Option<Edge> {
+    /// The edge from a point to the next, which something may turn about itself: the pull in it, and what that resists to being moved across.
+    fn edge(&mut self, number: usize, joints: &mut [Joint], is_held: bool, spun: Option<Spin>) -> Option<Edge> {
         let ends = [number, number + 1].map(|end| self.point(end));
         let [p, q] = ends.map(|end| end.row);
         let (x, v, x0, h) = (&*self.bodies.position, &*self.bodies.velocity, self.bodies.before[0], self.step.h);
         let way = x[q] - x[p];
         let embedded = !(ends[0].weight + ends[1].weight > 0.0);
         let joint = &mut joints[number];
-        let edge = Edge::of(Turn(joint.turn), [way, way - (v[q] - v[p]) * h, x0[q] - x0[p]], embedded)?;
+        let edge = Edge::of(Turn(joint.turn), [way, way - (v[q] - v[p]) * h, x0[q] - x0[p]], embedded, spun)?;
         joint.turn = edge.frame[0].0;
         if !is_held && !embedded {
             // Nothing but the material's stiffness holds it.
@@ -232,8 +268,8 @@ where
 
 /// Moves the points of a piece as its system says, and turns the frames of its edges; nothing, where the solution is no number. Tells whether it is.
 pub(super) fn act<const LANES: usize>(
-    band: &Band<'_, LANES>,
-    lane: usize,
+    (band, lane): (&Band<'_, LANES>, usize),
+    piece: &Piece,
     bodies: &mut Bodies<'_>,
     rows: &[u32],
     joints: &mut [Joint],
@@ -247,7 +283,7 @@ where
         return false;
     }
     let shift = |number: usize| Vec3::from_array([0, 1, 2].map(|axis| band.answer(lane, number * EQUATIONS + axis)));
-    let [drift, turn, middle] = stray(bodies, rows, shift);
+    let [drift, turn, middle] = if piece.is_free { stray(bodies, rows, shift) } else { [Vec3::ZERO; 3] };
     let h = bodies.substep.seconds();
     for (number, &row) in rows.iter().enumerate() {
         let row = row as usize;
