@@ -119,6 +119,7 @@ fn what_is_turned_at_both_ends_alike_is_not_twisted() {
     for held in [false, true] {
         let (Seen { twist, work }, _) = turned([1.5; 2], held, (Method::Symplectic, 5));
         let worst = twist.iter().fold(0.0f32, |worst, twist| worst.max(twist.abs()));
-        assert!(worst < 1e-3 && work.abs() < 1e-5, "held: {held}: {worst} {work}");
+        // A radian of twist would take 0.14 J; the material's turns are held a little as they are solved for.
+        assert!(worst < 1e-3 && work.abs() < 3e-4, "held: {held}: {worst} {work}");
     }
 }
