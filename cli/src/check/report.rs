@@ -1,6 +1,6 @@
 //! A check, told at a terminal or on a page, and as a table.
 
-use super::hold::{Hold, Kind};
+use super::hold::Hold;
 use super::modes::How;
 use super::study::{Oscillations, Stand, Study};
 use super::words::{limit, plain, time};
@@ -83,14 +83,11 @@ fn steps(study: &Study) -> Table {
 /// The constraints.
 fn holds(study: &Study) -> Table {
     let holds = || study.holds.iter();
-    let stiffness = |hold: &Hold| match (hold.kind, hold.stiffness) {
-        (Kind::Attach, _) => None,
-        (_, stiffness) => Some(stiffness.map_or("rigid".into(), plain)),
-    };
+    let stiffness = |hold: &Hold| (!hold.leads).then(|| hold.stiffness.map_or("rigid".into(), plain));
     let gives = |hold: &Hold| (hold.gives > 0.0).then(|| short(100.0 * hold.gives));
     let mut table = Table::default();
     table.column("", holds().map(Hold::name));
-    table.words("kind", holds().map(|hold| hold.kind.name()));
+    table.words("kind", holds().map(|hold| hold.kind.replace('_', " ")));
     table.column("particles", holds().map(|hold| thousands(hold.particles)));
     table.column("N/m", holds().map(stiffness));
     table.column("fastest /s", holds().map(|hold| hold.rate.map(plain)));
