@@ -1,5 +1,6 @@
 //! Constraints: how stiff each is, how it is solved, how far its own weight stretches it, and what sub-steps buy.
 
+use super::fall::Fall;
 use super::part::place;
 use super::statics::Hanging;
 use super::words::{plain, time};
@@ -40,6 +41,9 @@ pub(crate) struct Hold {
     pub(crate) owes: f64,
     /// True if both are estimates, since what hangs did not come to rest in time.
     pub(crate) estimated: bool,
+    /// The fall of a sheet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fall: Option<Fall>,
     /// Half the least side of boxes \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) half: Option<f64>,
@@ -117,6 +121,7 @@ impl Hold {
             gives: group.iter().filter_map(|of| of.hung(start, gravity)).fold(0.0, f64::max),
             owes: 0.0,
             estimated: false,
+            fall: Fall::of(model, kind),
             half: None,
             more: group.len() - 1,
             leads: kind.leads(),
@@ -142,6 +147,7 @@ impl Hold {
             gives: 0.0,
             owes: SINKS * weight / (2.0 * half),
             estimated: false,
+            fall: None,
             half: Some(half),
             more: 0,
             leads: false,
@@ -157,6 +163,12 @@ impl Hold {
     /// The longest sub-step that leaves it off by one per cent at the most.
     pub(crate) fn largest_step(&self) -> Limit {
         if self.owes > 0.0 { Limit::Step((FAULT / self.owes).sqrt()) } else { Limit::Unconditional }
+    }
+
+    /// The longest sub-step that leaves it off by one per cent at the most, at rest and where it falls.
+    pub(crate) fn enough(&self) -> Limit {
+        let falling = self.fall.map_or(Limit::Unconditional, |fall| Limit::Step(fall.step(FAULT)));
+        self.largest_step().and(falling)
     }
 
     /// Its name: the first of it, and how many follow.
@@ -180,11 +192,19 @@ impl Hold {
         let Solving { words, links, iterates } = self.solving;
         let mut told = words.to_owned();
         if iterates {
-            let _ = write!(told, ", {} iterations at most", self.iterations(h));
+            let _ = write!(told, ", in {} iterations at most", self.iterations(h));
         }
         if links {
             told += &if self.owes > 0.0 { format!(": {off} too long at rest") } else { ": exact".into() };
         }
+        told.extend(self.fall.map(|fall| {
+            let (speed, gives) = (plain(fall.speed), short(100.0 * fall.gives));
+            let more = match fall.fault(h) {
+                Some(share) => format!("{} %", short(100.0 * share)),
+                None => format!("far more, as that is {} edges a sub-step", plain(fall.speed * h / fall.edge)),
+            };
+            format!("; a hit at {speed} m/s stretches it by up to {gives} %, and sub-steps by up to {more} beyond that")
+        }));
         if self.rate.is_some_and(|rate| h * rate > 1.0) {
             let _ = write!(told, "; swings below {} fade", time(std::f64::consts::TAU * h));
         }

@@ -20,7 +20,7 @@ where
     }
 
     fn solved(&self) -> &'static str {
-        "as one"
+        "as one: exact at rest"
     }
 
     fn fault(&self) -> Option<(&'static str, &'static str)> {
