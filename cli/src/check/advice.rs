@@ -1,11 +1,11 @@
 //! Advice on what to change.
 
 use super::contact::STEPS;
-use super::hold::Hold;
+use super::hold::{FAULT, Hold};
 use super::part::place;
 use super::study::{Stand, Study};
 use super::words::{plain, time};
-use crate::report::words::counted;
+use crate::report::words::{counted, short};
 use pointmass::Spring;
 use pointmass::scene::Model;
 use pointmass::stability::Limit;
@@ -27,6 +27,7 @@ pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     advice.extend(damping(check, model));
     advice.extend(taut(check, stand));
     advice.extend(check.holds.iter().filter_map(|hold| held(check, hold)));
+    advice.extend(check.holds.iter().filter_map(|hold| fallen(check, hold)));
     advice.extend(world(check));
     advice
 }
@@ -129,6 +130,18 @@ fn held(check: &Study, hold: &Hold) -> Option<String> {
     let Limit::Step(enough) = hold.largest_step() else { return None };
     let parts = (check.dt / enough).ceil();
     Some(format!("{warning}: let the scene cut its steps into {parts} (`run.substeps`)"))
+}
+
+/// Advice about sheets that sub-steps stretch by much where they fall.
+fn fallen(check: &Study, hold: &Hold) -> Option<String> {
+    let fall = hold.fall.filter(|fall| check.h() > fall.step(FAULT))?;
+    let more = fall.fault(check.h()).map_or("far more".into(), |share| format!("{} % more", short(100.0 * share)));
+    let (name, speed, now) = (hold.name(), plain(fall.speed), time(check.h()));
+    let parts = (check.dt / fall.step(FAULT)).ceil();
+    Some(format!(
+        "where {name} hits at up to {speed} m/s, sub-steps of {now} may stretch it by {more} than its material gives for a moment; \
+         1 % with {parts} of them (`run.substeps`)"
+    ))
 }
 
 fn world(check: &Study) -> Vec<String> {

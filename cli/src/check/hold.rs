@@ -1,17 +1,18 @@
 //! Constraints: how stiff each is, how it is solved, how far its own weight stretches it, and what sub-steps buy.
 
+use super::fall::Fall;
 use super::part::place;
 use super::statics::Hanging;
 use super::words::{plain, time};
 use crate::report::words::short;
 use crate::stall::gravity;
-use pointmass::constrain::{Hinge, RigidBox, Shell, TiedRope};
+use pointmass::ConstraintKind;
+use pointmass::constrain::RigidBox;
 use pointmass::scene::Model;
-use pointmass::shape::Aabb;
 use pointmass::stability::Limit;
-use pointmass::{ConstraintKind, Rope, Strands, Vec3};
 use serde::Serialize;
 use std::collections::BTreeSet;
+use std::fmt::Write;
 
 /// The share by which a constraint may be off.
 pub(crate) const FAULT: f64 = 0.01;
@@ -26,7 +27,7 @@ const TURN: f64 = 0.35;
 pub(crate) struct Hold {
     /// Where the first stands in the file.
     pub(crate) place: String,
-    pub(crate) kind: Kind,
+    pub(crate) kind: &'static str,
     /// Their number, and that of their particles.
     pub(crate) count: usize,
     pub(crate) particles: usize,
@@ -40,40 +41,31 @@ pub(crate) struct Hold {
     pub(crate) owes: f64,
     /// True if both are estimates, since what hangs did not come to rest in time.
     pub(crate) estimated: bool,
+    /// The fall of a sheet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fall: Option<Fall>,
     /// Half the least side of boxes \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) half: Option<f64>,
+    /// How many stand behind the first, each at a place of its own in the file.
+    #[serde(skip)]
+    more: usize,
+    /// True if they go where a script says, whatever pulls at them.
+    #[serde(skip)]
+    pub(crate) leads: bool,
+    #[serde(skip)]
+    solving: Solving,
 }
 
-/// Kinds of constraints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Kind {
-    Distance,
-    Rope,
-    Cluster,
-    Attach,
-    Tie,
-    Shell,
-    Strands,
-    StrainLimits,
-    Boxes,
-}
-
-impl Kind {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Distance => "distance",
-            Self::Rope => "rope",
-            Self::Cluster => "cluster",
-            Self::Attach => "attach",
-            Self::Tie => "tie",
-            Self::Shell => "shell",
-            Self::Strands => "strands",
-            Self::StrainLimits => "strain limits",
-            Self::Boxes => "boxes",
-        }
-    }
+/// How a sub-step solves constraints.
+#[derive(Debug, Default)]
+struct Solving {
+    /// In words; none for boxes.
+    words: &'static str,
+    /// True if they are links of known lengths.
+    links: bool,
+    /// True if it takes iterations until little is left.
+    iterates: bool,
 }
 
 impl Hold {
@@ -81,11 +73,13 @@ impl Hold {
     pub(crate) fn all(model: &Model) -> Vec<Self> {
         let hanging = Hanging::of(model);
         let owed = hanging.owed(model);
-        let kinds = &model.constraints.0;
-        let is_body = |of: &ConstraintKind| matches!(kind(of), Kind::Shell | Kind::Strands);
-        let alike = |a: &ConstraintKind, b: &ConstraintKind| kind(a) == kind(b) && !is_body(a);
+        // What knows by itself how its weight stretches it has a row of its own.
+        let weighs = |of: &ConstraintKind| of.hung(&model.particles, 0.0).is_some();
+        let alike = |a: &ConstraintKind, b: &ConstraintKind| a.name() == b.name() && !weighs(a);
         let mut first = 0;
-        let mut all: Vec<_> = kinds
+        let mut all: Vec<_> = model
+            .constraints
+            .0
             .chunk_by(alike)
             .map(|group| {
                 let of = first..first + group.len();
@@ -108,53 +102,34 @@ impl Hold {
 
     /// Constraints of one kind, without what links are known for.
     fn of(model: &Model, group: &[ConstraintKind], first: usize) -> Self {
+        let (start, kind) = (&model.particles[..], &group[0]);
         let ends: BTreeSet<u32> = group.iter().flat_map(ConstraintKind::ends).copied().collect();
-        let rates = group.iter().map(|constraint| rate(model, constraint));
+        let stiffness = |of: &ConstraintKind| of.stiffness(start).map(|k| [k, (k * of.inverse_mass(start)).sqrt()]);
         let stiffest = |a: Option<[f64; 2]>, b: Option<[f64; 2]>| Some([a?[0].max(b?[0]), a?[1].max(b?[1])]);
-        let stiffest = rates.reduce(stiffest).flatten();
-        let this = Self {
-            place: format!("constraints[{first}]"),
-            kind: kind(&group[0]),
-            count: group.len(),
+        let stiffest = group.iter().map(stiffness).reduce(stiffest).flatten();
+        let gravity = gravity(model).length();
+        Self {
+            place: match kind.ends().next() {
+                Some(&end) if first >= model.listed_constraints => place(model, 0, end as usize),
+                _ => format!("constraints[{first}]"),
+            },
+            kind: kind.name(),
+            count: group.iter().map(ConstraintKind::count).sum(),
             particles: ends.len(),
             stiffness: stiffest.map(|[stiffness, _]| stiffness),
             rate: stiffest.map(|[_, rate]| rate),
-            gives: 0.0,
+            gives: group.iter().filter_map(|of| of.hung(start, gravity)).fold(0.0, f64::max),
             owes: 0.0,
             estimated: false,
+            fall: Fall::of(model, kind),
             half: None,
-        };
-        match &group[0] {
-            ConstraintKind::Shell(shell) => {
-                let at = shell.particles.first().map(|&first| place(model, 0, first as usize));
-                let place = at.filter(|at| at.starts_with("cloths")).unwrap_or(this.place);
-                Self { place, gives: hung(model, shell), ..this }
-            }
-            ConstraintKind::StrainLimits(limits) => {
-                let at = limits.triangles.first().map(|&[first, ..]| place(model, 0, first as usize));
-                let place = at.filter(|at| at.starts_with("cloths")).unwrap_or(this.place);
-                Self { place, ..this }
-            }
-            ConstraintKind::Strands(strands) => {
-                let at = strands.particles.first().map(|&first| place(model, 0, first as usize));
-                let place = at.filter(|at| at.starts_with("strands")).unwrap_or(this.place);
-                Self { place, count: each(strands).count(), gives: weighed(model, strands), ..this }
-            }
-            // Ropes, and what is tied of bodies, stand there in the file.
-            ConstraintKind::Rope(Rope { particles, .. })
-            | ConstraintKind::TiedRope(TiedRope { rope: Rope { particles, .. }, .. }) => {
-                let at = particles.first().map(|&first| place(model, 0, first as usize));
-                Self { place: at.filter(|at| at.starts_with("ropes")).unwrap_or(this.place), ..this }
-            }
-            ConstraintKind::Cluster(cluster) => {
-                let at = cluster.particles.first().map(|&first| place(model, 0, first as usize));
-                Self { place: at.filter(|at| at.starts_with("soft")).unwrap_or(this.place), ..this }
-            }
-            ConstraintKind::Tie(tie) => {
-                let at = place(model, 0, tie.particle as usize);
-                Self { place: if at.starts_with("particles") { this.place } else { at }, ..this }
-            }
-            _ => this,
+            more: group.len() - 1,
+            leads: kind.leads(),
+            solving: Solving {
+                words: kind.solved(),
+                links: kind.lengths().next().is_some(),
+                iterates: kind.iterates(),
+            },
         }
     }
 
@@ -164,7 +139,7 @@ impl Hold {
         let weight = f64::from(gravity(model).length());
         Self {
             place: place(model, 0, group[0].first as usize),
-            kind: Kind::Boxes,
+            kind: "boxes",
             count: group.len(),
             particles: group.iter().map(|of| of.count as usize).sum(),
             stiffness: None,
@@ -172,7 +147,11 @@ impl Hold {
             gives: 0.0,
             owes: SINKS * weight / (2.0 * half),
             estimated: false,
+            fall: None,
             half: Some(half),
+            more: 0,
+            leads: false,
+            solving: Solving::default(),
         }
     }
 
@@ -186,42 +165,53 @@ impl Hold {
         if self.owes > 0.0 { Limit::Step((FAULT / self.owes).sqrt()) } else { Limit::Unconditional }
     }
 
+    /// The longest sub-step that leaves it off by one per cent at the most, at rest and where it falls.
+    pub(crate) fn enough(&self) -> Limit {
+        let falling = self.fall.map_or(Limit::Unconditional, |fall| Limit::Step(fall.step(FAULT)));
+        self.largest_step().and(falling)
+    }
+
     /// Its name: the first of it, and how many follow.
     pub(crate) fn name(&self) -> String {
-        match (self.kind, self.count) {
-            (Kind::Boxes | Kind::Strands, _) | (_, 1) => self.place.clone(),
-            (_, count) => format!("{} and {} more", self.place, count - 1),
+        match self.more {
+            0 => self.place.clone(),
+            more => format!("{} and {more} more", self.place),
         }
     }
 
     /// The words for what it does in sub-steps of `h` \[s\].
     pub(crate) fn told(&self, h: f64) -> String {
         let about = if self.estimated { "about " } else { "" };
-        let percent = |share: f64| format!("{about}{} %", short(100.0 * share));
-        let fades = || match self.rate {
-            Some(rate) if h * rate > 1.0 => format!("; swings below {} fade", time(std::f64::consts::TAU * h)),
-            _ => String::new(),
-        };
-        match self.kind {
-            Kind::Distance => format!("one after the other: {} too long at rest{}", percent(self.fault(h)), fades()),
-            Kind::Rope => format!("link by link, directly: exact{}", fades()),
-            Kind::Cluster => format!("as one: exact at rest{}", fades()),
-            Kind::Attach => "go where the script says".into(),
-            Kind::Tie => format!("one after the other, to places on other bodies{}", fades()),
-            Kind::Strands => format!("each as one, directly{}", fades()),
-            Kind::StrainLimits => format!("triangle by triangle, there and back, 16 times at most{}", fades()),
-            Kind::Shell => format!("as one, {} iterations at most{}", self.iterations(h), fades()),
-            Kind::Boxes => {
-                let half = self.half.unwrap_or(0.0);
-                let (sinks, speed, turn) = (percent(self.fault(h)), plain(half / h), plain(TURN / h));
-                format!(
-                    "a pile of ten sinks by {sinks} of a box; {speed} m/s go half through, {turn} rad/s are too fast"
-                )
-            }
+        let off = format!("{about}{} %", short(100.0 * self.fault(h)));
+        if let Some(half) = self.half {
+            let (speed, turn) = (plain(half / h), plain(TURN / h));
+            return format!(
+                "a pile of ten sinks by {off} of a box; {speed} m/s go half through, {turn} rad/s are too fast"
+            );
         }
+        let Solving { words, links, iterates } = self.solving;
+        let mut told = words.to_owned();
+        if iterates {
+            let _ = write!(told, ", in {} iterations at most", self.iterations(h));
+        }
+        if links {
+            told += &if self.owes > 0.0 { format!(": {off} too long at rest") } else { ": exact".into() };
+        }
+        told.extend(self.fall.map(|fall| {
+            let (speed, gives) = (plain(fall.speed), short(100.0 * fall.gives));
+            let more = match fall.fault(h) {
+                Some(share) => format!("{} %", short(100.0 * share)),
+                None => format!("far more, as that is {} edges a sub-step", plain(fall.speed * h / fall.edge)),
+            };
+            format!("; a hit at {speed} m/s stretches it by up to {gives} %, and sub-steps by up to {more} beyond that")
+        }));
+        if self.rate.is_some_and(|rate| h * rate > 1.0) {
+            let _ = write!(told, "; swings below {} fade", time(std::f64::consts::TAU * h));
+        }
+        told
     }
 
-    /// The number of iterations of a shell's conjugate gradients that take the error to 1e-4 in sub-steps of `h` \[s\]: ½ √κ ln(2/ε) at the
+    /// The number of iterations of conjugate gradients that take the error to 1e-4 in sub-steps of `h` \[s\]: ½ √κ ln(2/ε) at the
     /// most (Shewchuk, "An Introduction to the Conjugate Gradient Method Without the Agonizing Pain", 1994, section 9), with κ = 1 + h² ω².
     pub(crate) fn iterations(&self, h: f64) -> u64 {
         let rate = h * self.rate.unwrap_or(0.0);
@@ -232,120 +222,14 @@ impl Hold {
     pub(crate) fn warning(&self, h: f64) -> Option<String> {
         let Limit::Step(enough) = self.largest_step() else { return None };
         let (name, off, now, enough_for) = (self.name(), short(100.0 * self.fault(h)), time(h), time(enough));
-        (h > enough * (1.0 + 1e-6)).then(|| match self.kind {
-            Kind::Boxes => {
+        (h > enough * (1.0 + 1e-6)).then(|| match self.half {
+            Some(_) => {
                 format!("in sub-steps of {now} a pile of ten of {name} sinks by {off} % of a box; {enough_for} leave 1 %")
             }
-            _ => format!(
+            None => format!(
                 "in sub-steps of {now} {name} hang up to {off} % longer than they are, since each is met once; {enough_for} leave \
                  1 %, and a rope does in any, unless a run says that it was cut short"
             ),
         })
     }
-}
-
-fn kind(constraint: &ConstraintKind) -> Kind {
-    match constraint {
-        ConstraintKind::Distance(_) => Kind::Distance,
-        ConstraintKind::Rope(_) | ConstraintKind::TiedRope(_) => Kind::Rope,
-        ConstraintKind::Cluster(_) => Kind::Cluster,
-        ConstraintKind::Attach(_) => Kind::Attach,
-        ConstraintKind::Shell(_) => Kind::Shell,
-        ConstraintKind::Strands(_) => Kind::Strands,
-        ConstraintKind::StrainLimits(_) => Kind::StrainLimits,
-        ConstraintKind::Tie(_) => Kind::Tie,
-    }
-}
-
-/// The stiffness of a constraint \[N/m\] and the rate of its fastest oscillation \[1/s\]; none where it is rigid.
-fn rate(model: &Model, constraint: &ConstraintKind) -> Option<[f64; 2]> {
-    let inverse = |&end: &u32| match model.particles[end as usize] {
-        particle if particle.fixed => 0.0,
-        particle => 1.0 / f64::from(particle.mass),
-    };
-    let lightest = || constraint.ends().map(inverse).fold(0.0, f64::max);
-    let (compliance, weight) = match constraint {
-        ConstraintKind::Distance(distance) => (distance.compliance, distance.ends.iter().map(inverse).sum()),
-        // Beside a link that is stretched those beside it are pressed.
-        ConstraintKind::Rope(rope) | ConstraintKind::TiedRope(TiedRope { rope, .. }) => {
-            (rope.compliance, 4.0 * lightest())
-        }
-        ConstraintKind::Cluster(cluster) => {
-            let masses = cluster.particles.iter().map(|&i| f64::from(model.particles[i as usize].mass));
-            (cluster.compliance, 1.0 / masses.sum::<f64>())
-        }
-        ConstraintKind::Attach(_) => (0.0, 0.0),
-        // The place gives way less than the lightest of what it is on.
-        ConstraintKind::Tie(tie) => (tie.compliance, constraint.ends().map(inverse).sum()),
-        ConstraintKind::StrainLimits(limits) => (limits.params.compliance, 4.0 * lightest()),
-        ConstraintKind::Strands(strands) => {
-            let at = |i: u32| model.particles[i as usize].position;
-            let edges =
-                each(strands).flat_map(|strand| strand.windows(2).map(|ends| at(ends[0]).distance(at(ends[1]))));
-            let shortest = edges.filter(|length| *length > 0.0).fold(f32::INFINITY, f32::min);
-            (strands.params.stretch.map_or(0.0, |stretch| shortest / stretch), 4.0 * lightest())
-        }
-        ConstraintKind::Shell(shell) => {
-            let stretch = f64::from(shell.params.stretch[0].max(shell.params.stretch[1]));
-            return Some([stretch, 2.0 * (stretch * lightest()).sqrt()]);
-        }
-    };
-    let stiffness = 1.0 / f64::from(compliance);
-    (compliance > 0.0).then(|| [stiffness, (stiffness * weight).sqrt()])
-}
-
-/// The points of each strand.
-fn each(strands: &Strands<Vec<u32>, Vec<u32>>) -> impl Iterator<Item = &[u32]> {
-    let mut left = &strands.particles[..];
-    let mut counts = strands.points.iter().chain(std::iter::repeat(strands.points.last().unwrap_or(&1)));
-    std::iter::from_fn(move || {
-        let count = left.len().min((*counts.next()?).max(1) as usize);
-        let (strand, rest) = left.split_at(count);
-        left = rest;
-        (count > 0).then_some(strand)
-    })
-}
-
-/// The strain at the root of the heaviest strand that hangs from there: weight / stretch.
-fn weighed(model: &Model, strands: &Strands<Vec<u32>, Vec<u32>>) -> f64 {
-    let particle = |&i: &u32| model.particles[i as usize];
-    let mass = |strand: &[u32]| {
-        strand
-            .iter()
-            .map(particle)
-            .filter(|particle| !particle.fixed)
-            .map(|particle| f64::from(particle.mass))
-            .sum::<f64>()
-    };
-    let heaviest = each(strands).map(mass).fold(0.0, f64::max);
-    let strain = strands
-        .params
-        .stretch
-        .map_or(0.0, |stretch| heaviest * f64::from(gravity(model).length()) / f64::from(stretch));
-    if strain.is_finite() { strain } else { 0.0 }
-}
-
-/// The strain at the top of a sheet that hangs from the box around what is fixed of it: density × g × length / stretch. One that
-/// nothing holds hangs by its longest extent.
-fn hung(model: &Model, shell: &Shell<Vec<u32>, Vec<[u32; 3]>, Vec<Hinge>>) -> f64 {
-    let at = |i: u32| model.particles[shell.particles[i as usize] as usize];
-    let numbers = || 0..shell.particles.len() as u32;
-    let area = |&[a, b, c]: &[u32; 3]| {
-        let [a, b, c] = [a, b, c].map(|corner| at(corner).position);
-        f64::from(0.5 * (b - a).cross(c - a).length())
-    };
-    let area: f64 = shell.triangles.iter().map(area).sum();
-    let mass: f64 = numbers().map(|i| f64::from(at(i).mass)).sum();
-    let places = || numbers().map(|i| at(i).position);
-    let held = Aabb::around(numbers().map(at).filter(|particle| particle.fixed).map(|particle| particle.position));
-    let from = |x: Vec3| x.distance(x.max(held.min).min(held.max));
-    let length = if numbers().any(|i| at(i).fixed) {
-        places().map(from).fold(0.0, f32::max)
-    } else {
-        let Aabb { min, max } = Aabb::around(places());
-        (max - min).max_element()
-    };
-    let stretch = f64::from(shell.params.stretch[0].min(shell.params.stretch[1]));
-    let strain = mass / area * f64::from(gravity(model).length()) * f64::from(length) / stretch;
-    if strain.is_finite() { strain } else { 0.0 }
 }

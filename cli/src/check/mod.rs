@@ -2,13 +2,14 @@
 //!
 //! `body` is whoever there may be, with the extremes of its `life`. `net` makes matrices of the springs, `modes` and `verlet`
 //! work out their oscillations at rest, `bounds` what holds in every pose, `contact` and `hit` what touching balls ask for,
-//! `goal` what goals do, `statics` how hard links are pulled, `hold` what constraints do, `world` what else has a time of its own;
+//! `goal` what goals do, `statics` how hard links are pulled, `fall` how hard sheets hit, `hold` what constraints do, `world` what else has a time of its own;
 //! `study` is what it came to, which `advice` puts into words, and `report` and `plot` tell.
 
 mod advice;
 mod body;
 mod bounds;
 mod contact;
+mod fall;
 mod goal;
 mod hit;
 mod hold;

@@ -8,7 +8,6 @@ use super::net::wide;
 use crate::stall::gravity;
 use nalgebra::Vector3;
 use pointmass::ConstraintKind;
-use pointmass::constrain::TiedRope;
 use pointmass::scene::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -57,7 +56,7 @@ pub(super) struct Hanging {
 }
 
 impl Hanging {
-    /// The links of distances and ropes, and springs, hung from all that is fixed or led by a script.
+    /// The links of constraints, and springs, hung from all that is fixed or led by a script.
     pub(super) fn of(model: &Model) -> Self {
         let mut links = links(model);
         let mut nodes = nodes(model, &links);
@@ -119,20 +118,12 @@ impl Link {
 fn links(model: &Model) -> Vec<Link> {
     let mut all = Vec::new();
     for (of, kind) in model.constraints.0.iter().enumerate() {
-        let (lengths, compliance, tether) = match kind {
-            ConstraintKind::Distance(distance) => (&[distance.length][..], distance.compliance, distance.tether),
-            ConstraintKind::Rope(rope) | ConstraintKind::TiedRope(TiedRope { rope, .. }) => {
-                (&rope.lengths[..], rope.compliance, rope.tether)
-            }
-            _ => continue,
-        };
-        let lengths = lengths.iter().chain(std::iter::repeat(lengths.last().unwrap_or(&0.0)));
-        all.extend(kind.links().zip(lengths).map(|(ends, &length)| Link {
+        all.extend(kind.links().zip(kind.lengths()).map(|(ends, length)| Link {
             ends: ends.map(|end| end as usize),
             length: f64::from(length),
-            compliance: f64::from(compliance),
+            compliance: f64::from(kind.compliance()),
             stiffness: 0.0,
-            tether,
+            tether: kind.is_tether(),
             of: Some(of),
         }));
     }
@@ -157,18 +148,14 @@ fn nodes(model: &Model, links: &[Link]) -> Vec<Node> {
     let mass = |i: usize| f64::from(model.particles[i].mass);
     let mut load = vec![0.0; if links.is_empty() { 0 } else { model.particles.len() }];
     linked.iter().for_each(|&i| load[i] = mass(i));
-    for kind in &model.constraints.0 {
-        let ends = match kind {
-            ConstraintKind::Cluster(_) | ConstraintKind::Shell(_) => kind.ends(),
-            _ => continue,
-        };
-        let (holding, rest): (Vec<usize>, Vec<_>) = ends.map(|&i| i as usize).partition(|i| linked.contains(i));
+    for body in model.constraints.0.iter().filter(|kind| kind.is_body()) {
+        let ends = body.ends().map(|&i| i as usize);
+        let (holding, rest): (Vec<usize>, Vec<_>) = ends.partition(|i| linked.contains(i));
         let share = rest.into_iter().map(mass).sum::<f64>() / holding.len().max(1) as f64;
         holding.iter().for_each(|&i| load[i] += share);
     }
-    let led = |kind: &ConstraintKind| matches!(kind, ConstraintKind::Attach(_));
-    let led: BTreeSet<u32> =
-        model.constraints.0.iter().filter(|kind| led(kind)).flat_map(ConstraintKind::ends).copied().collect();
+    let leading = model.constraints.0.iter().filter(|kind| kind.leads());
+    let led: BTreeSet<u32> = leading.flat_map(ConstraintKind::ends).copied().collect();
     let of = |(i, mass): (usize, f64)| Node {
         place: wide(model.particles[i].position),
         is_held: model.particles[i].fixed || led.contains(&(i as u32)),

@@ -103,11 +103,23 @@ impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
 
 #[cfg(feature = "alloc")]
 impl Declared for Attach<Vec<u32>, MotionBuf> {
+    fn name(&self) -> &'static str {
+        "attach"
+    }
+
+    fn solved(&self) -> &'static str {
+        "go where the script says"
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         self.motion.fault().map(|why| ("motion", why))
     }
 
     fn ends(&self) -> [&[u32]; 3] {
         [&self.particles, &[], &[]]
+    }
+
+    fn leads(&self) -> bool {
+        true
     }
 }

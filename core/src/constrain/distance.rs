@@ -1,10 +1,14 @@
 //! Two particles at a distance from each other: rods, links of ropes and chains, tethers.
 
 #[cfg(feature = "alloc")]
-use super::declared::Declared;
+use super::declared::{Declared, inverse_mass};
 use super::{Bodies, Constraint, Demand, SHIFTED, Share, Words};
 use crate::index::between;
 use crate::math::{dot, largest, length, max, min, sqrt};
+#[cfg(feature = "alloc")]
+use crate::particles::Particle;
+#[cfg(feature = "alloc")]
+use alloc::boxed::Box;
 use glam::Vec3;
 
 /// Keeps two particles at a distance: C = |x₁ − x₂| − length.
@@ -280,6 +284,14 @@ impl Constraint for Distance {
 
 #[cfg(feature = "alloc")]
 impl Declared for Distance {
+    fn name(&self) -> &'static str {
+        "distance"
+    }
+
+    fn solved(&self) -> &'static str {
+        "one after the other"
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         Self::fault(self)
     }
@@ -288,11 +300,23 @@ impl Declared for Distance {
         [&self.ends, &[], &[]]
     }
 
-    fn chain(&self) -> (&[u32], bool) {
-        (&self.ends, false)
+    fn links(&self) -> Box<dyn Iterator<Item = [u32; 2]> + '_> {
+        Box::new(core::iter::once(self.ends))
     }
 
     fn lengths(&self) -> &[f32] {
         core::slice::from_ref(&self.length)
+    }
+
+    fn compliance(&self) -> f32 {
+        self.compliance
+    }
+
+    fn is_tether(&self) -> bool {
+        self.tether
+    }
+
+    fn inverse_mass(&self, start: &[Particle]) -> f64 {
+        self.ends.iter().map(|&end| inverse_mass(start, end)).sum()
     }
 }

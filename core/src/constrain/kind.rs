@@ -6,6 +6,7 @@ use super::{
     TiedRope,
 };
 use crate::motion::MotionBuf;
+use crate::particles::Particle;
 use alloc::vec::Vec;
 
 /// Declares the constraints that have a name: that of the kind, in small letters.
@@ -50,20 +51,37 @@ kinds! {
 }
 
 impl ConstraintKind {
+    /// What it is, in small letters, such as `strain_limits`; a rope is one, tied or not.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.get().name()
+    }
+
+    /// How a sub-step solves it, in words.
+    #[must_use]
+    pub fn solved(&self) -> &'static str {
+        self.get().solved()
+    }
+
     /// The first of its numbers that cannot be used, and what it has to be.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         self.get().fault()
     }
 
-    /// The pairs of particles that it joins by a straight link, to be drawn as a line each.
-    pub fn links(&self) -> impl Iterator<Item = [u32; 2]> {
-        let (list, closed) = self.get().chain();
-        let back = list.last().zip(list.first()).filter(|_| closed).map(|(&last, &first)| [last, first]);
-        list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back)
+    /// How many things it holds together, each by itself: as many as it has strands, else one.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.get().count()
     }
 
-    /// How long each of its [`links`](Self::links) is at rest \[m\], in their order, and for ever the last of these; nothing where it has none.
+    /// The pairs of particles that it joins by a straight link.
+    pub fn links(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.get().links()
+    }
+
+    /// How long each of its [`links`](Self::links) is at rest \[m\], in their order, and for ever the last of these; nothing where it has none, or
+    /// where that is how they begin.
     pub fn lengths(&self) -> impl Iterator<Item = f32> {
         let list = self.get().lengths();
         list.iter().copied().chain(list.last().into_iter().flat_map(|&last| core::iter::repeat(last)))
@@ -72,6 +90,66 @@ impl ConstraintKind {
     /// The particles of the scene's start that it binds.
     pub fn ends(&self) -> impl Iterator<Item = &u32> {
         self.get().ends().into_iter().flatten()
+    }
+
+    /// The triangles of the surface that it makes of particles.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        self.get().triangles()
+    }
+
+    /// What of it acts along straight ways alone, and so not through the sides of a periodic room, in words.
+    #[must_use]
+    pub fn straight(&self) -> Option<&'static str> {
+        self.get().straight()
+    }
+
+    /// True if it puts particles where a script says, whatever pulls at them.
+    #[must_use]
+    pub fn leads(&self) -> bool {
+        self.get().leads()
+    }
+
+    /// True if all its particles hang together: who holds some of them holds all.
+    #[must_use]
+    pub fn is_body(&self) -> bool {
+        self.get().is_body()
+    }
+
+    /// True if it is solved by iterations (conjugate gradients) until little is left.
+    #[must_use]
+    pub fn iterates(&self) -> bool {
+        self.get().iterates()
+    }
+
+    /// α: how far a part of it gives way to a force \[m/N\]; zero is rigid, or says its stiffness otherwise.
+    #[must_use]
+    pub fn compliance(&self) -> f32 {
+        self.get().compliance()
+    }
+
+    /// True if its links only pull.
+    #[must_use]
+    pub fn is_tether(&self) -> bool {
+        self.get().is_tether()
+    }
+
+    /// The stiffness of the stiffest of its parts \[N/m\], as the scene's particles start; none where it is rigid.
+    #[must_use]
+    pub fn stiffness(&self, start: &[Particle]) -> Option<f64> {
+        self.get().stiffness(start)
+    }
+
+    /// The inverse of the mass that the fastest oscillation of such a part moves \[1/kg\], as if nothing else held it.
+    #[must_use]
+    pub fn inverse_mass(&self, start: &[Particle]) -> f64 {
+        self.get().inverse_mass(start)
+    }
+
+    /// The share by which its own weight stretches it, were it hung from what is fixed of it, in gravity of so much \[m/s²\]; none where links say
+    /// that.
+    #[must_use]
+    pub fn hung(&self, start: &[Particle], gravity: f32) -> Option<f64> {
+        self.get().hung(start, gravity)
     }
 }
 

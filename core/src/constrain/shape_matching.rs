@@ -5,6 +5,8 @@ use super::declared::{Declared, twice};
 use super::turn::{Turn, about, keeping, moment, nearest, outer, solve};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{dot, max, sqrt};
+#[cfg(feature = "alloc")]
+use crate::particles::Particle;
 use glam::{Mat3, Vec3};
 
 /// Keeps a cluster of particles in the shape that it had when the constraint first acted, moved and turned as a whole: a rigid body,
@@ -378,11 +380,36 @@ impl Body {
 
 #[cfg(feature = "alloc")]
 impl<P: AsRef<[u32]> + Sync> Declared for ShapeMatching<P> {
+    fn name(&self) -> &'static str {
+        "cluster"
+    }
+
+    fn solved(&self) -> &'static str {
+        "as one: exact at rest"
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         Self::fault(self).or_else(|| twice(self.particles.as_ref()))
     }
 
     fn ends(&self) -> [&[u32]; 3] {
         [self.particles.as_ref(), &[], &[]]
+    }
+
+    fn straight(&self) -> Option<&'static str> {
+        Some("clusters")
+    }
+
+    fn is_body(&self) -> bool {
+        true
+    }
+
+    fn compliance(&self) -> f32 {
+        self.compliance
+    }
+
+    fn inverse_mass(&self, start: &[Particle]) -> f64 {
+        let particles = self.particles.as_ref().iter().filter_map(|&number| start.get(number as usize));
+        1.0 / particles.map(|particle| f64::from(particle.mass)).sum::<f64>()
     }
 }

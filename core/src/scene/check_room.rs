@@ -2,7 +2,7 @@
 
 use super::numbers::{Checked, finite, zero_or_more};
 use super::{PeriodicRoom, SceneError, SceneFile};
-use crate::constrain::{ConstraintKind, Distance, Rope, TiedRope};
+use crate::constrain::ConstraintKind;
 use crate::force::{Force, ForceKind, Spring};
 use crate::math::max;
 use alloc::format;
@@ -41,15 +41,9 @@ impl SceneFile {
                 format!("are too short: balls are {} m wide, and have to be less than half of each side", 2.0 * widest);
             return Err(SceneError::value("room.sides", message));
         }
-        let bound = |constraint: &ConstraintKind| match constraint {
-            ConstraintKind::Distance(Distance { length, .. }) => *length,
-            ConstraintKind::Rope(Rope { lengths, .. })
-            | ConstraintKind::TiedRope(TiedRope { rope: Rope { lengths, .. }, .. }) => {
-                lengths.iter().copied().fold(0.0, max)
-            }
-            _ => 0.0,
-        };
-        let constraints = self.constraints.iter().map(bound).enumerate().map(|(i, length)| ("constraints", i, length));
+        let bound =
+            |of: &ConstraintKind| of.links().zip(of.lengths()).fold(0.0, |longest, (_, length)| max(longest, length));
+        let constraints = self.constraints.iter().enumerate().map(|(i, one)| ("constraints", i, bound(one)));
         let longest =
             |spring: &Spring| spring.rest_length * (1.0 + spring.drive.map_or(0.0, |drive| drive.amplitude.abs()));
         let springs = self.springs.iter().enumerate().map(|(i, spring)| ("springs", i, longest(spring)));
@@ -77,18 +71,8 @@ impl SceneFile {
         };
         let force = self.forces.iter().enumerate().find_map(|(i, force)| Some((format!("forces[{i}]"), far(force)?)));
         let part = |name: &str, is_empty: bool, what| (!is_empty).then(|| (format!("{name}[0]"), what));
-        let bound = |constraint: &ConstraintKind| match constraint {
-            ConstraintKind::Distance(_)
-            | ConstraintKind::Rope(_)
-            | ConstraintKind::Attach(_)
-            | ConstraintKind::Tie(_)
-            | ConstraintKind::TiedRope(_) => None,
-            ConstraintKind::Cluster(_) => Some("clusters"),
-            ConstraintKind::Shell(_) | ConstraintKind::StrainLimits(_) => Some("surfaces of particles"),
-            ConstraintKind::Strands(_) => Some("strands"),
-        };
-        let constraint =
-            self.constraints.iter().enumerate().find_map(|(i, one)| Some((format!("constraints[{i}]"), bound(one)?)));
+        let mut constraints = self.constraints.iter().enumerate();
+        let constraint = constraints.find_map(|(i, one)| Some((format!("constraints[{i}]"), one.straight()?)));
         force
             .or(constraint)
             .or(part("cloths", self.cloths.is_empty(), "surfaces of particles"))

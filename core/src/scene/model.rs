@@ -45,6 +45,8 @@ pub struct Model {
     pub contacts: Option<Response>,
     /// What binds them and keeps them apart.
     pub constraints: Constraints,
+    /// How many of the first constraints are listed in the file; those of its cloths, strands, ropes, soft bodies and ties follow.
+    pub listed_constraints: usize,
     /// Parts that each step is cut into.
     pub substeps: u32,
     /// The things that they bounce off.
@@ -120,6 +122,7 @@ impl Model {
                 file.contacts.and_then(|response| response.contacts()),
                 start.contacts,
             ),
+            listed_constraints: file.constraints.len(),
             substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
             reapers: file.reapers.clone(),
             custom: file.custom.clone(),

@@ -63,10 +63,9 @@ impl SceneFile {
     /// Remarks on parts that do nothing.
     fn add_idle(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
         for (i, constraint) in self.constraints.iter().enumerate() {
-            let ConstraintKind::Distance(distance) = constraint else { continue };
-            let [a, b] = distance.ends;
-            let itself = (a == b).then(|| format!("it holds particle {a} to itself, so it does nothing"));
-            add(format_args!("constraints[{i}].distance.ends"), itself);
+            let itself = constraint.links().find(|[a, b]| a == b);
+            let nothing = |[a, _]: [u32; 2]| format!("it holds particle {a} to itself, so it does nothing");
+            add(format_args!("constraints[{i}].{}.ends", constraint.name()), itself.map(nothing));
         }
         for (i, constraint) in self.constraints.iter().enumerate() {
             let ConstraintKind::Strands(strands) = constraint else { continue };

@@ -83,37 +83,12 @@ impl Plan {
         Ok(())
     }
 
-    /// Puts in what a constraint binds together: triangles that are not there already, and links.
+    /// Puts in what a constraint binds together: links, and triangles that are not there already.
     fn add_bonds(&mut self, constraint: &ConstraintKind) {
-        match constraint {
-            ConstraintKind::Distance(distance) => self.links.push(distance.ends),
-            ConstraintKind::Rope(rope) => self.links.extend(chain(&rope.particles, rope.closed)),
-            ConstraintKind::TiedRope(tied) => self.links.extend(chain(&tied.rope.particles, tied.rope.closed)),
-            ConstraintKind::Strands(strands) => {
-                let all = strands.strands().map(|[first, end]| &strands.particles[first..end]);
-                self.links.extend(all.flat_map(|particles| chain(particles, false)));
-            }
-            ConstraintKind::Shell(shell) => {
-                let there: HashSet<_> = self.triangles.iter().copied().collect();
-                // Corners are places in the shell's own list.
-                let particle = |corner: u32| shell.particles.get(corner as usize).copied();
-                let triangles =
-                    shell.triangles.iter().filter_map(|&[a, b, c]| Some([particle(a)?, particle(b)?, particle(c)?]));
-                self.triangles.extend(triangles.filter(|triangle| !there.contains(triangle)));
-            }
-            ConstraintKind::Cluster(_)
-            | ConstraintKind::Attach(_)
-            | ConstraintKind::StrainLimits(_)
-            | ConstraintKind::Tie(_) => {}
-        }
+        self.links.extend(constraint.links());
+        let there: HashSet<_> = self.triangles.iter().copied().collect();
+        self.triangles.extend(constraint.triangles().filter(|triangle| !there.contains(triangle)));
     }
-}
-
-/// The links of a chain of particles, and one more between its ends if it is closed.
-fn chain(particles: &[u32], is_closed: bool) -> impl Iterator<Item = [u32; 2]> + '_ {
-    let links = particles.windows(2).map(|ends| [ends[0], ends[1]]);
-    let last = particles.last().zip(particles.first()).filter(|_| is_closed);
-    links.chain(last.map(|(&last, &first)| [last, first]))
 }
 
 /// Whether births have no other value than this one.

@@ -9,6 +9,8 @@ mod solver;
 mod vigour;
 
 use super::{Bodies, Constraint, Demand, Share, Words};
+#[cfg(feature = "alloc")]
+use alloc::boxed::Box;
 use bounded::Bounds;
 use chain::Chain;
 use links::Links;
@@ -205,6 +207,14 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
 
 #[cfg(feature = "alloc")]
 impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> super::declared::Declared for Rope<P, L> {
+    fn name(&self) -> &'static str {
+        "rope"
+    }
+
+    fn solved(&self) -> &'static str {
+        "link by link, directly"
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         Self::fault(self).or_else(|| super::declared::twice(self.particles.as_ref()))
     }
@@ -213,11 +223,21 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> super::declared::Declared f
         [self.particles.as_ref(), &[], &[]]
     }
 
-    fn chain(&self) -> (&[u32], bool) {
-        (self.particles.as_ref(), self.closed)
+    fn links(&self) -> Box<dyn Iterator<Item = [u32; 2]> + '_> {
+        let list = self.particles.as_ref();
+        let back = list.last().zip(list.first()).filter(|_| self.closed).map(|(&last, &first)| [last, first]);
+        Box::new(list.windows(2).map(|pair| [pair[0], pair[1]]).chain(back))
     }
 
     fn lengths(&self) -> &[f32] {
         self.lengths.as_ref()
+    }
+
+    fn compliance(&self) -> f32 {
+        self.compliance
+    }
+
+    fn is_tether(&self) -> bool {
+        self.tether
     }
 }

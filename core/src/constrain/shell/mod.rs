@@ -4,6 +4,8 @@ mod assemble;
 mod bounded;
 mod corners;
 mod cycle;
+#[cfg(feature = "alloc")]
+mod declared;
 mod eights;
 mod finest;
 mod fold;
@@ -26,8 +28,6 @@ mod words;
 
 pub use params::ShellParams;
 
-#[cfg(feature = "alloc")]
-use super::declared::{Declared, twice};
 use super::{Bodies, Constraint, Demand, Share, Words, walls};
 use crate::cloth::Hinge;
 use crate::memory::take;
@@ -328,21 +328,5 @@ where
             walls::settle(walls, bodies);
             walls::follow(walls, bodies);
         }
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl<P, T, H> Declared for Shell<P, T, H>
-where
-    P: AsRef<[u32]> + Sync,
-    T: AsRef<[[u32; 3]]> + Sync,
-    H: AsRef<[Hinge]> + Sync,
-{
-    fn fault(&self) -> Option<(&'static str, &'static str)> {
-        Self::fault(self).or_else(|| twice(self.particles.as_ref()))
-    }
-
-    fn ends(&self) -> [&[u32]; 3] {
-        [self.particles.as_ref(), &[], &[]]
     }
 }

@@ -370,11 +370,27 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
 
 #[cfg(feature = "alloc")]
 impl<T: AsRef<[[u32; 3]]> + Sync> Declared for StrainLimits<T> {
+    fn name(&self) -> &'static str {
+        "strain_limits"
+    }
+
+    fn solved(&self) -> &'static str {
+        "triangle by triangle, there and back, 16 times at most"
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         Self::fault(self)
     }
 
     fn ends(&self) -> [&[u32]; 3] {
         [self.triangles.as_ref().as_flattened(), &[], &[]]
+    }
+
+    fn straight(&self) -> Option<&'static str> {
+        Some("surfaces of particles")
+    }
+
+    fn compliance(&self) -> f32 {
+        self.params.compliance
     }
 }

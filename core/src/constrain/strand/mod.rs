@@ -12,12 +12,18 @@ mod tests;
 pub use params::StrandParams;
 
 #[cfg(feature = "alloc")]
-use super::declared::{Declared, twice};
+use super::declared::{Declared, stiffness, twice};
 use super::turn::Turn;
 use super::{Bodies, Constraint, Demand, Share, Words};
+#[cfg(feature = "alloc")]
+use crate::math::min;
 use crate::math::{length, sin_cos};
 use crate::memory::take;
+#[cfg(feature = "alloc")]
+use crate::particles::Particle;
 use crate::rows::BLOCKS;
+#[cfg(feature = "alloc")]
+use alloc::boxed::Box;
 use band::Band;
 use bounded::{Bounded, Course, PURSE, Purse};
 use bytemuck::Pod;
@@ -336,11 +342,51 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
 
 #[cfg(feature = "alloc")]
 impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Declared for Strands<P, L> {
+    fn name(&self) -> &'static str {
+        "strands"
+    }
+
+    fn solved(&self) -> &'static str {
+        "each as one, directly"
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         Self::fault(self).or_else(|| twice(self.particles.as_ref()))
     }
 
     fn ends(&self) -> [&[u32]; 3] {
         [self.particles.as_ref(), &[], &[]]
+    }
+
+    fn count(&self) -> usize {
+        self.strands().count()
+    }
+
+    fn links(&self) -> Box<dyn Iterator<Item = [u32; 2]> + '_> {
+        let each = self.strands().map(|[first, last]| &self.particles.as_ref()[first..last]);
+        Box::new(each.flat_map(|strand| strand.windows(2).map(|ends| [ends[0], ends[1]])))
+    }
+
+    fn straight(&self) -> Option<&'static str> {
+        Some("strands")
+    }
+
+    // That of the shortest edge.
+    fn stiffness(&self, start: &[Particle]) -> Option<f64> {
+        let place = |end: u32| start.get(end as usize).map_or(Vec3::NAN, |particle| particle.position);
+        let edges = Declared::links(self).map(|[a, b]| length(place(b) - place(a)));
+        let shortest = edges.filter(|length| *length > 0.0).fold(f32::INFINITY, min);
+        self.params.stretch.and_then(|stretch| stiffness(shortest / stretch))
+    }
+
+    // That at the root of the heaviest, hung from there: weight / stretch.
+    fn hung(&self, start: &[Particle], gravity: f32) -> Option<f64> {
+        let mass = |[first, last]: [usize; 2]| {
+            let particles = self.particles.as_ref()[first..last].iter().filter_map(|&i| start.get(i as usize));
+            particles.filter(|particle| !particle.fixed).map(|particle| f64::from(particle.mass)).sum::<f64>()
+        };
+        let heaviest = self.strands().map(mass).fold(0.0, f64::max);
+        let strain = |stretch: f32| heaviest * f64::from(gravity) / f64::from(stretch);
+        Some(self.params.stretch.map_or(0.0, strain)).filter(|strain| strain.is_finite()).or(Some(0.0))
     }
 }

@@ -1,13 +1,15 @@
 //! How a tie holds what it ties.
 
 #[cfg(feature = "alloc")]
-use super::super::declared::{Declared, twice};
+use super::super::declared::{Declared, inverse_mass, twice};
 use super::super::{Bodies, Constraint, Demand, Share, Words};
 use super::Tie;
 use super::grip::Grip;
 use super::place::{offset, weights};
 use crate::index::between;
 use crate::math::{largest, length, max};
+#[cfg(feature = "alloc")]
+use crate::particles::Particle;
 use glam::Vec3;
 
 /// Rounds at the most where there is an offset, whose direction is not linear in the places.
@@ -138,11 +140,28 @@ impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Constraint for Tie<T, W> {
 
 #[cfg(feature = "alloc")]
 impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Declared for Tie<T, W> {
+    fn name(&self) -> &'static str {
+        "tie"
+    }
+
+    fn solved(&self) -> &'static str {
+        "one after the other, to places on other bodies"
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         Self::fault(self).or_else(|| twice(self.to.as_ref()).map(|(_, why)| ("to", why)))
     }
 
     fn ends(&self) -> [&[u32]; 3] {
-        [self.to.as_ref(), core::slice::from_ref(&self.particle), &[]]
+        [core::slice::from_ref(&self.particle), self.to.as_ref(), &[]]
+    }
+
+    fn compliance(&self) -> f32 {
+        self.compliance
+    }
+
+    // The place gives way less than the lightest of what it is on.
+    fn inverse_mass(&self, start: &[Particle]) -> f64 {
+        self.to.as_ref().iter().chain([&self.particle]).map(|&end| inverse_mass(start, end)).sum()
     }
 }

@@ -7,6 +7,8 @@ use super::Tie;
 use super::grip::Grip;
 use crate::math::{dot, unit};
 use crate::memory::take;
+#[cfg(feature = "alloc")]
+use alloc::boxed::Box;
 use glam::Vec3;
 
 /// A rope of which one end or both are tied to a body, however heavy that is.
@@ -212,6 +214,14 @@ where
     T: AsRef<[u32]> + Sync,
     W: AsRef<[f32]> + Sync,
 {
+    fn name(&self) -> &'static str {
+        self.rope.name()
+    }
+
+    fn solved(&self) -> &'static str {
+        self.rope.solved()
+    }
+
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         self.fault_by(names_twice)
     }
@@ -221,11 +231,19 @@ where
         [self.rope.particles.as_ref(), to(0), to(1)]
     }
 
-    fn chain(&self) -> (&[u32], bool) {
-        self.rope.chain()
+    fn links(&self) -> Box<dyn Iterator<Item = [u32; 2]> + '_> {
+        Declared::links(&self.rope)
     }
 
     fn lengths(&self) -> &[f32] {
         Declared::lengths(&self.rope)
+    }
+
+    fn compliance(&self) -> f32 {
+        self.rope.compliance
+    }
+
+    fn is_tether(&self) -> bool {
+        self.rope.tether
     }
 }
