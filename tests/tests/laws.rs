@@ -47,6 +47,7 @@ mod pieces;
 mod rays;
 mod reapers;
 mod rigid;
+mod rolling;
 mod rooms;
 mod rope_energy;
 mod ropes;

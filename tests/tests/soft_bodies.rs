@@ -323,3 +323,23 @@ fn what_cannot_be_filled_is_refused_by_name() {
         assert!(said.contains(&format!("soft_bodies[0].{words}")), "{form} {spacing} {rest}: {said}");
     }
 }
+
+/// Balls that overlap where they begin get a remark, if they answer each other's touch.
+#[test]
+fn a_body_whose_balls_overlap_gets_a_remark() {
+    for (radius, contacts, is_odd) in [
+        (r#", "radius": 0.08"#, r#""contacts": {"position": {}},"#, true),
+        (r#", "radius": 0.08"#, "", false),
+        (r#", "radius": 0.05"#, r#""contacts": {"position": {}},"#, false),
+        ("", r#""contacts": {"impulse": {}},"#, false),
+    ] {
+        let text = format!(
+            r#"{{{contacts} "soft_bodies": [{{"form": {{"box": [1, 1, 1]}}, "spacing": 0.1, "density": 100,
+            "position": [0, 1, 0], "give": 1{radius}}}]}}"#
+        );
+        let file = SceneFile::from_json("it.json", &text).unwrap_or_else(|error| panic!("{error}"));
+        let remarks = file.remarks();
+        let told = remarks.iter().any(|remark| remark.starts_with("soft_bodies[0].radius: balls of 0.08 m"));
+        assert_eq!(told, is_odd, "{radius} {contacts}: {remarks:?}");
+    }
+}

@@ -30,6 +30,9 @@ use glam::{Mat3, Vec3};
 /// What holds single particles back (contacts, links) is listed behind it: velocities are shared among all at the sub-step's end, and places
 /// in the next sub-step, so that a blow on one of n takes about n sub-steps to stop all of them. Until then it is a little out of shape.
 ///
+/// Where [`Contacts`](super::Contacts) keep balls apart, those of one cluster must not overlap in its shape: they would be pushed apart in each sub-step
+/// and pulled back, which may throw it about.
+///
 /// Whoever is fixed stays: about one that is fixed the others swing, about two they turn, and three hold all of them. Whoever has died is
 /// left out. Lines and planes of particles are bodies as good as any; one particle alone, or all in one place, are not bound.
 ///

@@ -1,9 +1,9 @@
 //! Plates, foils and skins in scene files: by the modulus and the thickness of their material, which is the same in all directions.
 
 use super::SceneError;
-use super::numbers::{Checked, above_zero, zero_or_more};
 #[cfg(feature = "serde")]
-use super::tuft::usual_poisson;
+use super::numbers::usual_poisson;
+use super::numbers::{Checked, above_zero, zero_or_more};
 use crate::constrain::ShellParams;
 use alloc::format;
 

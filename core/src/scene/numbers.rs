@@ -1,4 +1,4 @@
-//! Checks of numbers in files, and the errors that tell what they have to be.
+//! Checks of numbers in files, the errors that tell what they have to be, and what several of them are where nothing is said.
 
 use super::SceneError;
 use crate::math::unit;
@@ -6,6 +6,12 @@ use alloc::format;
 use glam::Vec3;
 
 pub(super) type Checked = Result<(), SceneError>;
+
+/// Poisson's ratio of most plastics, and of hair.
+#[cfg(feature = "serde")]
+pub(super) const fn usual_poisson() -> f32 {
+    0.35
+}
 
 pub(super) fn finite(at: &str, numbers: &[f32]) -> Checked {
     match numbers.iter().find(|x| !x.is_finite()) {

@@ -1,6 +1,6 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::{Growth, Response, SceneFile};
+use super::{Growth, Response, SceneFile, SoftBody};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::Friction;
@@ -38,6 +38,7 @@ impl SceneFile {
         }
         for (i, body) in self.soft_bodies.iter().enumerate() {
             add(format_args!("soft_bodies[{i}].elasticity"), odd_elasticity(Varied::exactly(body.elasticity)));
+            add(format_args!("soft_bodies[{i}].radius"), self.contacts.and_then(|_| overlapping(body)));
         }
         for (i, emitter) in self.emitters.iter().enumerate() {
             add(
@@ -137,6 +138,16 @@ pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<Stri
 fn odd_spread(spread: Spread) -> Option<String> {
     let Spread::Uniform(cutoff) = spread else { return None };
     (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
+}
+
+/// A remark on a body whose balls overlap where they begin: it pulls them back to where contacts push them apart, for ever.
+fn overlapping(body: &SoftBody) -> Option<String> {
+    let most = 0.5 * body.spacing;
+    let radius = body.radius.filter(|&radius| radius > most)?;
+    Some(format!(
+        "balls of {radius} m that are {} m apart overlap, so contacts push them apart without end, and may throw the body about: take {most} m or less",
+        body.spacing
+    ))
 }
 
 /// A remark on odd ends of a spring.

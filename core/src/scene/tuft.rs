@@ -2,6 +2,8 @@
 
 use super::Body;
 use super::cloth::winds;
+#[cfg(feature = "serde")]
+use super::numbers::usual_poisson;
 use crate::constrain::{Attach, ConstraintKind, StrandParams, Strands};
 use crate::draw::Lock;
 use crate::force::{CylinderDrag, ForceKind};
@@ -149,11 +151,6 @@ pub struct Curl {
     pub radius: f32,
     /// The way from one coil to the next along their axis \[m\].
     pub pitch: f32,
-}
-
-#[cfg(feature = "serde")]
-pub(super) const fn usual_poisson() -> f32 {
-    0.35
 }
 
 /// How often a place outside the box is tried again.

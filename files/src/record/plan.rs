@@ -65,7 +65,7 @@ impl Plan {
             solids: Solid::all(model),
         };
         plan.add_faces(file, model, scene, files)?;
-        model.constraints.0.iter().for_each(|constraint| plan.add_bonds(constraint));
+        plan.add_bonds(&model.constraints.0);
         Ok(plan)
     }
 
@@ -83,11 +83,12 @@ impl Plan {
         Ok(())
     }
 
-    /// Puts in what a constraint binds together: links, and triangles that are not there already.
-    fn add_bonds(&mut self, constraint: &ConstraintKind) {
-        self.links.extend(constraint.links());
-        let there: HashSet<_> = self.triangles.iter().copied().collect();
-        self.triangles.extend(constraint.triangles().filter(|triangle| !there.contains(triangle)));
+    /// Puts in what constraints bind together: links, and triangles that are not there already.
+    fn add_bonds(&mut self, constraints: &[ConstraintKind]) {
+        self.links.extend(constraints.iter().flat_map(ConstraintKind::links));
+        let mut there: HashSet<_> = self.triangles.iter().copied().collect();
+        let triangles = constraints.iter().flat_map(ConstraintKind::triangles);
+        self.triangles.extend(triangles.filter(|triangle| there.insert(*triangle)));
     }
 }
 
