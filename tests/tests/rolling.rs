@@ -13,7 +13,7 @@ fn drum(count: u32, ball: f32, up: Vec3, down: Vec3) -> Vec<Particle> {
         (up.cross(down), Particle { radius: ball, elasticity: 0.0, material: Some(0), ..Particle::REST });
     let place = |i: u32| {
         let (sin, cos) = (core::f32::consts::TAU * (i / 2) as f32 / count as f32).sin_cos();
-        up * (1.0 + ball - cos) + down * sin + axis * if i % 2 == 0 { -0.5 } else { 0.5 }
+        up * (1.0 + ball - cos) + down * sin + axis * if i.is_multiple_of(2) { -0.5 } else { 0.5 }
     };
     (0..2 * count).map(|i| Particle { position: place(i), ..part }).collect()
 }
