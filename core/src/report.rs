@@ -249,6 +249,7 @@ impl Report {
         // The hash takes in `other` where there are any.
         let Died { lifetime, sink, density, chance, other: _, nonfinite } = died;
         let Caps { bounces, chords, springs, contacts: near, insufficient_memory, .. } = caps;
+        let Caps { stalled: _, graphs: _, edges: _, crushed: _, degenerate: _, .. } = caps;
         [
             initial,
             born,

@@ -324,22 +324,26 @@ fn what_cannot_be_filled_is_refused_by_name() {
     }
 }
 
-/// Balls that overlap where they begin get a remark, if they answer each other's touch.
+/// Balls that overlap where they begin get a remark, if they answer each other's touch: in a box they are as far apart as whole numbers of cells allow.
 #[test]
 fn a_body_whose_balls_overlap_gets_a_remark() {
-    for (radius, contacts, is_odd) in [
-        (r#", "radius": 0.08"#, r#""contacts": {"position": {}},"#, true),
-        (r#", "radius": 0.08"#, "", false),
-        (r#", "radius": 0.05"#, r#""contacts": {"position": {}},"#, false),
-        ("", r#""contacts": {"impulse": {}},"#, false),
+    let position = r#""contacts": {"position": {}},"#;
+    for (spacing, radius, contacts, is_odd) in [
+        (0.1, r#", "radius": 0.08"#, position, true),
+        (0.1, r#", "radius": 0.08"#, "", false),
+        (0.1, r#", "radius": 0.05"#, position, false),
+        (0.1, "", r#""contacts": {"impulse": {}},"#, false),
+        (0.3, r#", "radius": 0.16"#, position, false),
+        (0.35, r#", "radius": 0.17"#, position, true),
+        (0.66, "", position, true),
     ] {
         let text = format!(
-            r#"{{{contacts} "soft_bodies": [{{"form": {{"box": [1, 1, 1]}}, "spacing": 0.1, "density": 100,
+            r#"{{{contacts} "soft_bodies": [{{"form": {{"box": [1, 1, 1]}}, "spacing": {spacing}, "density": 100,
             "position": [0, 1, 0], "give": 1{radius}}}]}}"#
         );
         let file = SceneFile::from_json("it.json", &text).unwrap_or_else(|error| panic!("{error}"));
         let remarks = file.remarks();
-        let told = remarks.iter().any(|remark| remark.starts_with("soft_bodies[0].radius: balls of 0.08 m"));
-        assert_eq!(told, is_odd, "{radius} {contacts}: {remarks:?}");
+        let told = remarks.iter().any(|remark| remark.starts_with("soft_bodies[0].radius: balls of"));
+        assert_eq!(told, is_odd, "{spacing} {radius} {contacts}: {remarks:?}");
     }
 }

@@ -495,8 +495,11 @@ fn edges_without_length_are_counted() {
     let mut twice = plain.clone();
     twice[7].position = plain[8].position;
     twice[4].position = plain[3].position;
-    for (start, right) in [(plain, 0), (twice, 2)] {
-        let tuft = strand(&start, even(10.0, 1e-4, 1e-4, 1e-3));
+    // Those that are not there are none.
+    let (mut nowhere, few) = (plain.clone(), plain[..7].to_vec());
+    nowhere[9].position.y = f32::NAN;
+    for (start, right) in [(plain, 0), (twice, 2), (nowhere, 2), (few, 0)] {
+        let tuft = Strands::of((0..11).collect::<Vec<u32>>(), [11], even(10.0, 1e-4, 1e-4, 1e-3));
         let scene = Scene { start: &start, constraints: &tuft, substeps: 4, ..Scene::EMPTY };
         let mut system = started(&scene, start.len(), 0);
         run(&mut system, &scene, 1.0 / 60.0, 3);
@@ -544,10 +547,10 @@ fn nothing_does_a_strand_harm() {
     for (at, (start, tame)) in starts.iter().enumerate() {
         for (number, &params) in params.iter().enumerate() {
             for points in [vec![12], vec![5, 3], vec![2], vec![1, 0], vec![99]] {
-                for substeps in [1, 4] {
+                for (substeps, turning) in [(1, [0.0; 2]), (4, [0.0, 50.0]), (2, [f32::NAN, 1.0]), (3, [3e38; 2])] {
                     let particles = (0..12).chain([77]).collect::<Vec<u32>>();
-                    let tuft =
-                        Strands { twist: 3.0, held: [true; 2], ..Strands::of(particles, points.clone(), params) };
+                    let held = [true; 2];
+                    let tuft = Strands { twist: 3.0, held, turning, ..Strands::of(particles, points.clone(), params) };
                     let forces = Gravity { acceleration: Vec3::NEG_Y * G };
                     let scene = Scene { start, forces: &forces, constraints: &tuft, substeps, ..Scene::EMPTY };
                     let mut system = started(&scene, start.len(), 0);

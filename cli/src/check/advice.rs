@@ -134,10 +134,10 @@ fn held(check: &Study, hold: &Hold) -> Option<String> {
 
 /// Advice about sheets that sub-steps stretch by much where they fall.
 fn fallen(check: &Study, hold: &Hold) -> Option<String> {
-    let fall = hold.fall.filter(|fall| check.h() > fall.step(FAULT))?;
+    let fall = hold.fall.filter(|fall| check.h() > fall.step(FAULT) * (1.0 + 1e-6))?;
     let more = fall.fault(check.h()).map_or("far more".into(), |share| format!("{} % more", short(100.0 * share)));
     let (name, speed, now) = (hold.name(), plain(fall.speed), time(check.h()));
-    let parts = (check.dt / fall.step(FAULT)).ceil();
+    let parts = (check.dt / fall.step(FAULT) * (1.0 - 1e-6)).ceil();
     Some(format!(
         "where {name} hits at up to {speed} m/s, sub-steps of {now} may stretch it by {more} than its material gives for a moment; \
          1 % with {parts} of them (`run.substeps`)"

@@ -15,7 +15,6 @@ use pointmass::scene::{Material, Model};
 use pointmass::shape::{Aabb, Collider, Segment};
 use pointmass::{ConstraintKind, Vec3};
 use serde::Serialize;
-use std::collections::HashSet;
 
 /// The largest strain of what is stopped, for each share of the speed of its waves that it had.
 const STRUCK: f64 = 1.5;
@@ -41,11 +40,11 @@ pub(crate) struct Fall {
 
 impl Fall {
     /// None where something holds it, or nothing is beneath it.
-    pub(super) fn of(model: &Model, sheet: &ConstraintKind) -> Option<Self> {
+    pub(super) fn of(model: &Model, sheet: &ConstraintKind, held: &[bool]) -> Option<Self> {
         let place = |end: u32| model.particles[end as usize].position;
         let edges = sheet.triangles().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
         let edge = edges.map(|[a, b]| place(a).distance(place(b))).reduce(f32::min)?;
-        if is_held(model, sheet) {
+        if sheet.ends().any(|&end| held[end as usize]) {
             return None;
         }
         let speed = sheet.ends().filter_map(|&end| speed(model, end as usize)).reduce(f64::max)?;
@@ -70,28 +69,37 @@ impl Fall {
     }
 }
 
-/// Tells whether something is bound to a sheet that is no part of it, or a particle of it does not move by itself.
-fn is_held(model: &Model, sheet: &ConstraintKind) -> bool {
-    let own: HashSet<u32> = sheet.ends().copied().collect();
-    let reaches = |ends: &mut dyn Iterator<Item = u32>| {
-        let [mut inside, mut outside] = [false; 2];
-        ends.for_each(|end| *if own.contains(&end) { &mut inside } else { &mut outside } = true);
-        [inside, inside && outside]
+/// The particles of the start that do not move as what they are a part of does by itself: those that are fixed or led, and those that something binds
+/// to what is no part of that.
+pub(super) fn held(model: &Model) -> Vec<bool> {
+    let mut owner = vec![usize::MAX; model.particles.len()];
+    for (number, body) in model.constraints.0.iter().enumerate().filter(|(_, of)| of.is_body()) {
+        body.ends().for_each(|&end| owner[end as usize] = number);
+    }
+    let mut held: Vec<bool> = model.particles.iter().map(|particle| particle.fixed).collect();
+    let mut bind = |ends: &[u32], leads: bool| {
+        let owned = |end: &u32| owner[*end as usize];
+        if leads || ends.windows(2).any(|pair| owned(&pair[0]) != owned(&pair[1])) {
+            ends.iter().for_each(|&end| held[end as usize] = true);
+        }
     };
-    let bound = |other: &ConstraintKind| {
-        let [inside, across] = reaches(&mut other.ends().copied());
-        across || inside && other.leads()
-    };
-    own.iter().any(|&end| model.particles[end as usize].fixed)
-        || model.constraints.0.iter().any(bound)
-        || model.springs.iter().any(|spring| reaches(&mut spring.ends.into_iter())[1])
+    for of in &model.constraints.0 {
+        bind(&of.ends().copied().collect::<Vec<_>>(), of.leads());
+    }
+    model.springs.iter().for_each(|spring| bind(&spring.ends, false));
+    held
 }
 
 /// The speed of a particle of the start where it meets the scenery beneath it \[m/s\]; beneath is where it goes, if there is no gravity.
 fn speed(model: &Model, number: usize) -> Option<f64> {
     let (particle, gravity) = (&model.particles[number], gravity(model));
     let down = if gravity == Vec3::ZERO { particle.velocity } else { gravity }.normalize_or_zero();
-    let path = Segment::new(particle.position, particle.position + down * FAR);
-    let deep = f64::from(model.colliders.first_hit(&path)?.time * FAR);
+    let deep = |far: f32| {
+        let path = Segment::new(particle.position, particle.position + down * far);
+        Some(model.colliders.first_hit(&path)?.time * far)
+    };
+    // Once more on a way hardly longer than that, of which rounding takes less.
+    let far = deep(FAR)?;
+    let deep = f64::from(deep(1.01 * far).unwrap_or(far));
     Some((f64::from(particle.velocity.length_squared()) + 2.0 * f64::from(gravity.length()) * deep).sqrt())
 }

@@ -1,6 +1,6 @@
 //! Constraints: how stiff each is, how it is solved, how far its own weight stretches it, and what sub-steps buy.
 
-use super::fall::Fall;
+use super::fall::{self, Fall};
 use super::part::place;
 use super::statics::Hanging;
 use super::words::{plain, time};
@@ -47,7 +47,7 @@ pub(crate) struct Hold {
     /// Half the least side of boxes \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) half: Option<f64>,
-    /// How many stand behind the first, each at a place of its own in the file.
+    /// How many constraints of that kind follow the first.
     #[serde(skip)]
     more: usize,
     /// True if they go where a script says, whatever pulls at them.
@@ -60,7 +60,7 @@ pub(crate) struct Hold {
 /// How a sub-step solves constraints.
 #[derive(Debug, Default)]
 struct Solving {
-    /// In words; none for boxes.
+    /// The words for that; none for boxes.
     words: &'static str,
     /// True if they are links of known lengths.
     links: bool,
@@ -76,6 +76,7 @@ impl Hold {
         // What knows by itself how its weight stretches it has a row of its own.
         let weighs = |of: &ConstraintKind| of.hung(&model.particles, 0.0).is_some();
         let alike = |a: &ConstraintKind, b: &ConstraintKind| a.name() == b.name() && !weighs(a);
+        let held = fall::held(model);
         let mut first = 0;
         let mut all: Vec<_> = model
             .constraints
@@ -90,7 +91,7 @@ impl Hold {
                     .map(|((link, pull), owed)| [link.compliance * pull / link.length, owed / link.length]);
                 let [gives, owes] = shares.fold([0.0; 2], |[a, b], [x, y]| [f64::max(a, x), f64::max(b, y)]);
                 let estimated = !hanging.is_at_rest && owes + gives > 0.0;
-                let of_group = Self::of(model, group, first);
+                let of_group = Self::of(model, group, first, &held);
                 let hold = Self { gives: of_group.gives.max(gives), owes, estimated, ..of_group };
                 first = of.end;
                 hold
@@ -101,7 +102,7 @@ impl Hold {
     }
 
     /// Constraints of one kind, without what links are known for.
-    fn of(model: &Model, group: &[ConstraintKind], first: usize) -> Self {
+    fn of(model: &Model, group: &[ConstraintKind], first: usize, held: &[bool]) -> Self {
         let (start, kind) = (&model.particles[..], &group[0]);
         let ends: BTreeSet<u32> = group.iter().flat_map(ConstraintKind::ends).copied().collect();
         let stiffness = |of: &ConstraintKind| of.stiffness(start).map(|k| [k, (k * of.inverse_mass(start)).sqrt()]);
@@ -121,7 +122,7 @@ impl Hold {
             gives: group.iter().filter_map(|of| of.hung(start, gravity)).fold(0.0, f64::max),
             owes: 0.0,
             estimated: false,
-            fall: Fall::of(model, kind),
+            fall: Fall::of(model, kind, held),
             half: None,
             more: group.len() - 1,
             leads: kind.leads(),
@@ -200,10 +201,10 @@ impl Hold {
         told.extend(self.fall.map(|fall| {
             let (speed, gives) = (plain(fall.speed), short(100.0 * fall.gives));
             let more = match fall.fault(h) {
-                Some(share) => format!("{} %", short(100.0 * share)),
-                None => format!("far more, as that is {} edges a sub-step", plain(fall.speed * h / fall.edge)),
+                Some(share) => format!("by up to {} % beyond that", short(100.0 * share)),
+                None => format!("by far more, as it goes {} edges in each", plain(fall.speed * h / fall.edge)),
             };
-            format!("; a hit at {speed} m/s stretches it by up to {gives} %, and sub-steps by up to {more} beyond that")
+            format!("; a hit at {speed} m/s stretches it by up to {gives} %, and sub-steps {more}")
         }));
         if self.rate.is_some_and(|rate| h * rate > 1.0) {
             let _ = write!(told, "; swings below {} fade", time(std::f64::consts::TAU * h));

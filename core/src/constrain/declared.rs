@@ -79,7 +79,8 @@ pub(super) trait Declared: Constraint {
         4.0 * self.ends().into_iter().flatten().map(|&end| inverse_mass(start, end)).fold(0.0, f64::max)
     }
 
-    /// The share by which its own weight stretches it, were it hung from what is fixed of it; none where links say that. Gravity is in m/s².
+    /// The share by which its own weight stretches it, were it hung from what is fixed of it, in gravity of so much \[m/s²\]; none where that
+    /// is not known, or follows from its links.
     fn hung(&self, _start: &[Particle], _gravity: f32) -> Option<f64> {
         None
     }

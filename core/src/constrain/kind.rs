@@ -121,7 +121,7 @@ impl ConstraintKind {
         self.get().iterates()
     }
 
-    /// α: how far a part of it gives way to a force \[m/N\]; zero is rigid, or says its stiffness otherwise.
+    /// α: how far a part of it gives way to a force \[m/N\]; zero where it is rigid, or has a stiffness instead.
     #[must_use]
     pub fn compliance(&self) -> f32 {
         self.get().compliance()
@@ -145,8 +145,8 @@ impl ConstraintKind {
         self.get().inverse_mass(start)
     }
 
-    /// The share by which its own weight stretches it, were it hung from what is fixed of it, in gravity of so much \[m/s²\]; none where links say
-    /// that.
+    /// The share by which its own weight stretches it, were it hung from what is fixed of it, in gravity of so much \[m/s²\]; none where that
+    /// is not known, or follows from its links.
     #[must_use]
     pub fn hung(&self, start: &[Particle], gravity: f32) -> Option<f64> {
         self.get().hung(start, gravity)

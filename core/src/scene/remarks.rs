@@ -1,6 +1,6 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::{Growth, Response, SceneFile, SoftBody};
+use super::{Growth, Response, SceneFile};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::Friction;
@@ -38,7 +38,7 @@ impl SceneFile {
         }
         for (i, body) in self.soft_bodies.iter().enumerate() {
             add(format_args!("soft_bodies[{i}].elasticity"), odd_elasticity(Varied::exactly(body.elasticity)));
-            add(format_args!("soft_bodies[{i}].radius"), self.contacts.and_then(|_| overlapping(body)));
+            add(format_args!("soft_bodies[{i}].radius"), self.contacts.and_then(|_| body.overlap()));
         }
         for (i, emitter) in self.emitters.iter().enumerate() {
             add(
@@ -64,18 +64,17 @@ impl SceneFile {
     /// Remarks on parts that do nothing.
     fn add_idle(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
         for (i, constraint) in self.constraints.iter().enumerate() {
-            let itself = constraint.links().find(|[a, b]| a == b);
-            let nothing = |[a, _]: [u32; 2]| format!("it holds particle {a} to itself, so it does nothing");
-            add(format_args!("constraints[{i}].{}.ends", constraint.name()), itself.map(nothing));
-        }
-        for (i, constraint) in self.constraints.iter().enumerate() {
+            if let ConstraintKind::Distance(distance) = constraint {
+                let [a, b] = distance.ends;
+                let itself = (a == b).then(|| format!("it holds particle {a} to itself, so it does nothing"));
+                add(format_args!("constraints[{i}].distance.ends"), itself);
+            }
             let ConstraintKind::Strands(strands) = constraint else { continue };
-            let end = [0, 1].into_iter().find(|&end| self.is_idly_turned(strands, end));
-            let nothing = |end: usize| {
-                let name = ["root", "tip"][end];
-                format!("no {name} is held or clamped by two fixed neighbours, so nothing is turned there")
-            };
-            add(format_args!("constraints[{i}].strands.turning"), end.map(nothing));
+            for (end, name) in ["root", "tip"].into_iter().enumerate() {
+                let nothing =
+                    || format!("no {name} is held or clamped by two fixed neighbours, so nothing is turned there");
+                add(format_args!("constraints[{i}].strands.turning"), self.is_idly_turned(strands, end).then(nothing));
+            }
         }
         for (i, tuft) in self.strands.iter().enumerate() {
             let loose = tuft.motion.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
@@ -138,16 +137,6 @@ pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<Stri
 fn odd_spread(spread: Spread) -> Option<String> {
     let Spread::Uniform(cutoff) = spread else { return None };
     (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
-}
-
-/// A remark on a body whose balls overlap where they begin: it pulls them back to where contacts push them apart, for ever.
-fn overlapping(body: &SoftBody) -> Option<String> {
-    let most = 0.5 * body.spacing;
-    let radius = body.radius.filter(|&radius| radius > most)?;
-    Some(format!(
-        "balls of {radius} m that are {} m apart overlap, so contacts push them apart without end, and may throw the body about: take {most} m or less",
-        body.spacing
-    ))
 }
 
 /// A remark on odd ends of a spring.

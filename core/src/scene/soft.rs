@@ -4,11 +4,12 @@ use super::SceneError;
 use super::filling::{Fault, SoftForm, boxed, filled};
 use super::numbers::{Checked, above_zero, finite, zero_or_more};
 use crate::constrain::{Attach, ConstraintKind, ShapeMatching};
-use crate::math::{cbrt, length, sin_cos, unit};
+use crate::math::{cbrt, length, min, sin_cos, unit};
 use crate::motion::{Motion, MotionBuf};
 use crate::particles::{Color, Particle};
 use crate::shape::MeshBuf;
 use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 use core::f32::consts::TAU;
 use glam::Vec3;
@@ -64,7 +65,7 @@ pub struct SoftBody {
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub motion: Option<MotionBuf>,
     /// The radius of its particles \[m\]; without it 0.4 times the spacing, so that neighbours do not touch as long as it is not squeezed
-    /// by a fifth.
+    /// by a fifth (a box of few cells, which may be less wide than that, by less).
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub radius: Option<f32>,
     /// Coefficient of linear drag of all of it \[kg/s\].
@@ -104,6 +105,25 @@ impl SoftBody {
         let SoftForm::Box(sides) = &self.form else { return None };
         let cells = boxed(*sides * self.scale, self.spacing).0;
         Some(cells.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n))))
+    }
+
+    /// A remark on balls that overlap where they begin: the body pulls them back to where contacts push them apart, for ever.
+    pub(super) fn overlap(&self) -> Option<String> {
+        let apart = match self.form {
+            SoftForm::Box(sides) => {
+                let (cells, side) = boxed(sides * self.scale, self.spacing);
+                (0..3).filter(|&axis| cells[axis] > 1).map(|axis| side[axis]).fold(f32::INFINITY, min)
+            }
+            SoftForm::Mesh(_) => self.spacing,
+        };
+        let (radius, most) = (self.radius.unwrap_or(RADIUS * self.spacing), 0.5 * apart);
+        // Numbers of files are rounded.
+        (radius > most * (1.0 + 1e-6)).then(|| {
+            format!(
+                "balls of {radius} m that are {apart} m apart overlap, so contacts push them apart without end, and may throw the body about: \
+                 take {most} m or less"
+            )
+        })
     }
 
     /// The square of how fast it swings \[1/s²\], for its height \[m\]; none if it is rigid.

@@ -63,8 +63,8 @@ impl Cone {
 
     /// Where the line runs inside the infinite cone below the apex, `offset` being measured from the apex.
     ///
-    /// It is solved from the place on the line that is nearest to the apex where the cone is as wide as high, so that where the line grazes the
-    /// mantle close to the apex, little cancels, from however far off it comes.
+    /// It is solved from the place on the line that is nearest to the apex, with heights scaled so that the cone is as wide as high: where the line
+    /// grazes the mantle close to the apex, little cancels, from however far off it comes.
     fn mantle(&self, offset: Vec3, step: Vec3) -> Option<Span> {
         let k = self.radius / self.height;
         let product = |a: Vec3, b: Vec3| a.x * b.x + a.z * b.z - k * k * a.y * b.y;

@@ -101,7 +101,7 @@ fn hits_that_graze_a_cone_near_its_apex_are_on_it() {
     assert!(hits > 20_000, "{hits}");
 }
 
-/// As the path that a search for such has met.
+/// A path that a search for such paths has met.
 #[test]
 fn a_path_that_grazes_a_cone_from_far_hits_its_surface() {
     let cone = Cone { center: Vec3::new(0.3, -0.2, 0.5), radius: 0.6, height: 1.1 };

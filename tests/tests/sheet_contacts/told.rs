@@ -140,3 +140,40 @@ fn observers_are_told_once_of_each_particle_of_a_sheet_that_lands() {
         }
     }
 }
+
+/// A thick sheet that slides over a floor into a wall: the floor's pressure in the same sub-step does not keep the wall's blow from being told, once.
+#[test]
+fn observers_are_told_of_a_wall_that_a_lying_sheet_slides_into() {
+    for (size, substeps, method) in
+        [(1.0f32, 5u32, Method::Symplectic), (0.1, 1, Method::Verlet), (10.0, 8, Method::Rk4)]
+    {
+        let (speed, thickness) = (2.0 * size, 0.01 * size);
+        let mut cloths = Cloths::default();
+        let sides = [Vec3::X, Vec3::Z].map(|side| side * (0.3 * size));
+        let center = Vec3::Y * (0.5 * thickness);
+        cloths.add(&square(center, sides, 4), cotton(size), |x| x, Vec3::X * speed);
+        let constraints = (&cloths.shells[..], cloths.contacts(thickness));
+        let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        let wall = Plane { point: Vec3::X * (0.4 * size), normal: Vec3::NEG_X };
+        let scene = Scene {
+            start: &cloths.start,
+            forces: &Gravity { acceleration: Vec3::NEG_Y * (G * size) },
+            colliders: &(floor, wall),
+            constraints: &constraints,
+            integrator: method.integrator(),
+            substeps,
+            ..Scene::EMPTY
+        };
+        let (mut system, mut blows) = (started(&scene, cloths.start.len(), 0), Blows::default());
+        for frame in 1..=20 {
+            system.step_observed(&scene, Time::frame(frame, 60) - system.time(), &mut blows);
+        }
+        let at_wall = blows.0.iter().filter(|blow| blow.normal.x < -0.99 && blow.closing > 0.9 * speed);
+        let mut rows: Vec<_> = at_wall.map(|blow| blow.row).collect();
+        rows.sort_unstable();
+        // The row of particles that goes ahead.
+        let front = |&row: &usize| cloths.start[row].position.x > 0.14 * size;
+        let ahead: Vec<_> = (0..cloths.start.len()).filter(front).collect();
+        assert_eq!(rows, ahead, "{size} m, {substeps}, {method}: {:?}", blows.0);
+    }
+}

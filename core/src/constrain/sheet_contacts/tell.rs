@@ -9,6 +9,9 @@ use crate::observe::Impact;
 use crate::particles::Id;
 use glam::Vec3;
 
+/// The share of the speed of a blow that a face has to have taken by itself to be told of where something else has stopped the particle as well.
+const MOSTLY: f32 = 0.5;
+
 /// Tells of what has pressed in the sub-step, and came together faster than what rests does in a step.
 pub(super) fn tell(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
     if !bodies.is_watched() {
@@ -31,13 +34,12 @@ pub(super) fn tell(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
         let along = |v: Vec3| dot(v - surface.velocity, surface.normal);
         let row = kept.rows[i] as usize;
         let mut ends = [along(bodies.before[1][row]), along(kept.pushed[i])];
-        let mut least = 0.0;
-        if bodies.is_touching(row) {
-            // What a shell's wall has stopped has been told of by that, unless it is another face that stops it, which the wall has not slowed it toward.
+        let is_stopped = bodies.is_touching(row);
+        if is_stopped {
+            // A shell's wall, mostly, has stopped it before and told of that: a face is another if that has not slowed it toward this.
             ends = [max(ends[0], ends[1]), min(ends[0], ends[1])];
-            least = 0.5;
         }
-        let is_own = |closing: &f32| surface.touch.pressed() >= least * closing;
+        let is_own = |closing: &f32| !is_stopped || surface.touch.pressed() > MOSTLY * closing;
         if let Some(closing) = closing(ends, bodies.substep.count).filter(is_own) {
             met(kept, bodies, (i, None, surface.normal), (closing, surface.velocity));
         }

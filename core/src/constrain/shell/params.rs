@@ -8,8 +8,8 @@ pub struct ShellParams {
     /// Young's modulus times thickness along the warp and along the weft \[N/m\]: a strip of that width is stretched by a share
     /// s of its length with a pull of s times as much for each metre of its width. Woven cotton has about 2,000, jersey 100.
     pub stretch: [f32; 2],
-    /// Shear modulus times thickness \[N/m\], for the angle between warp and weft. Half the stretch is what a material has that
-    /// is the same in all directions; cloth has much less.
+    /// Shear modulus times thickness \[N/m\], for the angle between warp and weft. What is the same in all directions has the
+    /// stretch over 2 + 2 ν, with Poisson's ratio ν; cloth has much less.
     pub shear: f32,
     /// Bending stiffness \[N m\]: a strip is bent to a radius R by a moment of so much over R for each metre of its width. Silk has
     /// about 1e-6, cotton 1e-5, denim 1e-4, paper 1e-3.
@@ -22,8 +22,8 @@ pub struct ShellParams {
 }
 
 impl ShellParams {
-    /// A plate of a thickness \[m\], of a material that is the same in all directions, with its Young's modulus \[Pa\] and Poisson's ratio, without
-    /// damping: E t along warp and weft, G t = E t / (2 + 2 ν) between them, and D = E t³ / (12 (1 − ν²)) against bending (Timoshenko and
+    /// A plate of a thickness \[m\], of a material that is the same in all directions, with its Young's modulus \[Pa\] and Poisson's ratio ν,
+    /// which is above -1 and up to 0.5, without damping: E t along warp and weft, G t = E t / (2 + 2 ν) between them, and D = E t³ / (12 (1 − ν²)) against bending (Timoshenko and
     /// Woinowsky-Krieger, "Theory of Plates and Shells", 1959, article 2). Paper has some 3 GPa, 0.3 and 0.1 mm, rubber 5 MPa and 0.5,
     /// aluminium foil 70 GPa, 0.35 and 15 µm.
     ///

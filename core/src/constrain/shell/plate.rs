@@ -278,7 +278,7 @@ impl Patch {
         let [first, second] = [0, 1].map(|side| slopes(bend, side));
         let [a, b] = [first[0] + second[0], first[1] + second[1]];
         for (curvature, _) in bend.curvature.iter().zip(hinge.faces).filter(|&(_, of)| of == face) {
-            // Where the triangle goes against the edge, its normal is against that of the fold, and all of its folds are told along its own.
+            // Where the triangle's normal is against the fold's, the curvature changes its sign: all folds of a triangle are told along its own.
             let sign = if curvature[0] + curvature[1] < 0.0 { -1.0 } else { 1.0 };
             for (corner, slope) in hinge.corners().into_iter().zip([a, b, first[2], second[2]]) {
                 self.add(corner, curvature.map(|part| part * (sign * slope)));

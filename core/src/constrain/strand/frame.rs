@@ -44,12 +44,10 @@ impl Edge {
 pub(super) struct Spin([f32; 2]);
 
 impl Spin {
-    /// That by an angle \[rad\]; none by zero.
+    /// That by an angle \[rad\]; none by zero, nor by what is none.
     pub(super) fn by(angle: f32) -> Option<Self> {
-        (angle != 0.0).then(|| {
-            let (sin, cos) = sin_cos(0.5 * angle);
-            Self([sin, cos])
-        })
+        let (sin, cos) = if angle.is_finite() { sin_cos(0.5 * angle) } else { (0.0, 1.0) };
+        (angle != 0.0 && sin.is_finite() && cos.is_finite()).then_some(Self([sin, cos]))
     }
 
     /// It, right-handed about a direction.

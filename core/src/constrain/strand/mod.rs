@@ -97,7 +97,7 @@ pub struct Strands<P, L> {
     #[cfg_attr(feature = "serde", serde(default))]
     pub held: [bool; 2],
     /// How fast the first and the last edge are turned about themselves \[rad/s\], right-handed about the direction from the root to the tip: by a drill, a
-    /// winch, the hands that wind a rope. It counts at an end that is `held`, or clamped by two fixed neighbours, of which all that are fixed are turned.
+    /// winch, the hands that wind a rope. It counts at an end that is `held`, or clamped by two fixed neighbours, where all edges between fixed points are turned.
     /// What is turned at both ends with the same rate is not twisted. More than half a turn between two edges is less the other way round, so
     /// for many turns it takes many edges, and less than half a turn in a sub-step.
     #[cfg_attr(feature = "serde", serde(default))]
@@ -163,16 +163,15 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         let ((joints, _), mut degenerate) = (self.kept(kept), 0);
         for [first, last] in self.strands() {
             let Some(joints) = joints.get_mut(first..last) else { break };
-            let place = |number: usize| {
-                let particle = self.particles.as_ref()[last - 1 - number];
-                bodies.row_of_start(particle).map_or(Vec3::ZERO, |row| bodies.position[row])
-            };
+            let row = |number: usize| bodies.row_of_start(self.particles.as_ref()[last - 1 - number]);
+            let place = |number: usize| row(number).map_or(Vec3::ZERO, |row| bodies.position[row]);
             let way = |number: usize| place(number + 1) - place(number);
             let edges = last - first - 1;
             let mut turn = None;
             for (number, joint) in joints[..edges].iter_mut().enumerate().rev() {
                 joint.length = length(way(number));
-                degenerate += u64::from(joint.length == 0.0);
+                let is_there = [number, number + 1].into_iter().all(|end| row(end).is_some());
+                degenerate += u64::from(is_there && !(joint.length > 0.0 && joint.length < f32::INFINITY));
                 let direction = way(number) / joint.length;
                 if direction.is_finite() {
                     turn = Some(turn.map_or_else(|| frame(direction, self.across), |turn| bring(turn, direction)));
@@ -371,7 +370,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Declared for Strands<P, L> 
         Some("strands")
     }
 
-    // That of the shortest edge.
+    // The stiffness of the shortest edge.
     fn stiffness(&self, start: &[Particle]) -> Option<f64> {
         let place = |end: u32| start.get(end as usize).map_or(Vec3::NAN, |particle| particle.position);
         let edges = Declared::links(self).map(|[a, b]| length(place(b) - place(a)));

@@ -96,7 +96,7 @@ struct Driven {
 }
 
 impl Driven {
-    /// How fast an edge is turned which so many are before, toward the tip and toward the root \[rad/s\].
+    /// How fast an edge is turned that so many others are before, toward the tip and toward the root \[rad/s\].
     fn rate(&self, before: [usize; 2]) -> f32 {
         let of = |end: usize| if before[end] < self.edges[end] { self.rates[end] } else { 0.0 };
         of(0) + of(1)
