@@ -47,7 +47,7 @@ pub(crate) struct Hold {
     /// Half the least side of boxes \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) half: Option<f64>,
-    /// How many constraints of that kind follow the first.
+    /// The number of constraints of that kind that follow the first.
     #[serde(skip)]
     more: usize,
     /// True if they go where a script says, whatever pulls at them.

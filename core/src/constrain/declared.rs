@@ -6,7 +6,7 @@ use alloc::boxed::Box;
 
 /// A constraint that scene files can name.
 pub(super) trait Declared: Constraint {
-    /// What it is, in small letters.
+    /// The name of its kind, in small letters.
     fn name(&self) -> &'static str;
 
     /// How a sub-step solves it, in words.
@@ -18,7 +18,7 @@ pub(super) trait Declared: Constraint {
     /// The particles of the scene's start that it binds, in up to three lists; the first of all is a part of what it holds.
     fn ends(&self) -> [&[u32]; 3];
 
-    /// How many things it holds together, each by itself.
+    /// The number of things that it holds together, each by itself.
     fn count(&self) -> usize {
         1
     }
@@ -38,7 +38,7 @@ pub(super) trait Declared: Constraint {
         Box::new(core::iter::empty())
     }
 
-    /// What of it acts along straight ways alone, and so not through the sides of a periodic room. By default all of it acts along the shortest.
+    /// The part of it that acts along straight ways alone, and so not through the sides of a periodic room. By default all of it acts along the shortest.
     fn straight(&self) -> Option<&'static str> {
         None
     }

@@ -51,7 +51,7 @@ kinds! {
 }
 
 impl ConstraintKind {
-    /// What it is, in small letters, such as `strain_limits`; a rope is one, tied or not.
+    /// The name of its kind, in small letters, such as `strain_limits`; a rope is one, tied or not.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.get().name()
@@ -69,7 +69,7 @@ impl ConstraintKind {
         self.get().fault()
     }
 
-    /// How many things it holds together, each by itself: as many as it has strands, else one.
+    /// The number of things that it holds together, each by itself: as many as it has strands, else one.
     #[must_use]
     pub fn count(&self) -> usize {
         self.get().count()
@@ -97,7 +97,7 @@ impl ConstraintKind {
         self.get().triangles()
     }
 
-    /// What of it acts along straight ways alone, and so not through the sides of a periodic room, in words.
+    /// The part of it that acts along straight ways alone, and so not through the sides of a periodic room, in words.
     #[must_use]
     pub fn straight(&self) -> Option<&'static str> {
         self.get().straight()

@@ -98,7 +98,7 @@ pub struct Strands<P, L> {
     pub held: [bool; 2],
     /// How fast the first and the last edge are turned about themselves \[rad/s\], right-handed about the direction from the root to the tip: by a drill, a
     /// winch, the hands that wind a rope. It counts at an end that is `held`, or clamped by two fixed neighbours, where all edges between fixed points are turned.
-    /// What is turned at both ends with the same rate is not twisted. More than half a turn between two edges is less the other way round, so
+    /// A strand that is turned at both ends with the same rate is not twisted. More than half a turn between two edges is less the other way round, so
     /// for many turns it takes many edges, and less than half a turn in a sub-step.
     #[cfg_attr(feature = "serde", serde(default))]
     pub turning: [f32; 2],
