@@ -448,3 +448,132 @@ fn files_name_clusters_and_say_what_is_wrong_with_them() {
         assert!(error.contains(what), "{cluster}: {error}");
     }
 }
+
+/// A box of points on a slope: it stays where friction can hold it, and slides down as a block does where not. What it may turn over by is left out by
+/// a low one.
+#[test]
+fn a_box_of_points_lies_and_slides_as_a_block_does() {
+    for method in Method::ALL {
+        for (degrees, mu, substeps, size) in [
+            (20.0f32, 0.5f32, 5, 1.0f32),
+            (20.0, 0.2, 10, 0.05),
+            (35.0, 0.3, 20, 10.0),
+            (10.0, 0.0, 5, 1.0),
+            (5.0, 0.2, 1, 1.0),
+        ] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let (up, down) = (Vec3::new(sin, cos, 0.0), Vec3::new(cos, -sin, 0.0));
+            let part = Particle { material: Some(0), elasticity: 0.0, ..Particle::REST };
+            let mut start = corners(Vec3::ZERO, Vec3::new(0.4, 0.05, 0.3), Vec3::ZERO, Vec3::ZERO, part);
+            for particle in &mut start {
+                let Vec3 { x, y, z } = particle.position * size;
+                particle.position = down * x + up * (y + 0.05 * size) + Vec3::Z * z;
+            }
+            let body = ShapeMatching::rigid(CUBE);
+            let materials =
+                [ContactMaterial { elasticity: None, friction: Some(Friction { static_: mu, kinetic: mu }) }];
+            let slope = Plane { point: Vec3::ZERO, normal: up };
+            let scene = Scene {
+                start: &start,
+                forces: &Gravity { acceleration: Vec3::NEG_Y * (9.81 * size) },
+                colliders: &slope,
+                materials: &materials,
+                constraints: &body,
+                substeps,
+                integrator: method.integrator(),
+                ..Scene::EMPTY
+            };
+            let mut system = started(&scene, 8, 0);
+            run(&mut system, &scene, 1.0 / 60.0, 60);
+            let way = start.iter().zip(system.particles().position).map(|(p, x)| (*x - p.position) / size);
+            let mean = way.clone().sum::<Vec3>() / 8.0;
+            let right = 0.5 * 9.81 * (sin - mu * cos).max(0.0);
+            let name = format!("{method}, {degrees}°, {mu}, {substeps}, {size} m");
+            let step = 9.81 * sin / 60.0 / substeps as f32;
+            assert!((mean.dot(down) - right).abs() < 0.01 * right + step + 1e-4, "{name}: {mean} for {right}");
+            assert!(way.clone().all(|way| (way - mean).length() < 1e-3), "{name}: it turns");
+            assert!(mean.dot(up).abs() < 1e-3, "{name}: {}", mean.dot(up));
+        }
+    }
+}
+
+/// A box of points that falls on a corner, an edge or a side bounces as a rigid body does: by an impulse e + 1 times that which would stop the corner.
+#[test]
+fn a_box_of_points_bounces_as_a_rigid_body_does() {
+    let mut random = Random::new(23);
+    for number in 0..often(60) {
+        let half = Vec3::new(random.between(0.05, 0.3), random.between(0.05, 0.3), random.between(0.05, 0.3));
+        let elasticity = [0.0f32, 0.5, 1.0][number % 3];
+        let part = Particle { elasticity, ..Particle::REST };
+        // Far from other corners' heights: a single one meets the ground.
+        let tilt = random.direction() * random.between(0.4, 0.8);
+        let turn = |v: Vec3| {
+            let (axis, angle) = (tilt.normalize(), tilt.length());
+            v * angle.cos() + axis.cross(v) * angle.sin() + axis * (axis.dot(v) * (1.0 - angle.cos()))
+        };
+        let mut start = corners(Vec3::ZERO, half, Vec3::ZERO, Vec3::ZERO, part);
+        let (velocity, omega) = (Vec3::new(random.between(-1.0, 1.0), -2.0, 0.5), random.vector(1.0));
+        for particle in &mut start {
+            let r = turn(particle.position);
+            (particle.position, particle.velocity) = (r, velocity + omega.cross(r));
+        }
+        let mut heights: Vec<f32> = start.iter().map(|p| p.position.y).collect();
+        heights.sort_by(f32::total_cmp);
+        if heights[1] - heights[0] < 0.05 {
+            continue;
+        }
+        let lift = 0.01 - heights[0];
+        start.iter_mut().for_each(|p| p.position.y += lift);
+        let lowest = *start.iter().min_by(|a, b| a.position.y.total_cmp(&b.position.y)).expect("eight");
+        let body = ShapeMatching::rigid(CUBE);
+        let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        for (method, substeps) in [(Method::Symplectic, 40), (Method::Verlet, 20), (Method::Rk4, 40)] {
+            let scene = Scene {
+                start: &start,
+                colliders: &ground,
+                constraints: &body,
+                substeps,
+                integrator: method.integrator(),
+                ..Scene::EMPTY
+            };
+            let mut system = started(&scene, 8, 0);
+            let before = Measures::of(&system, &scene);
+            run(&mut system, &scene, 1.0 / 60.0, 1);
+            let after = Measures::of(&system, &scene);
+            // What it is pushed by tells how much: J = ΔP, and the corner leaves e times as fast as it came.
+            let impulse = after.momentum[1] - before.momentum[1];
+            let r = f64s(lowest.position - Vec3::Y * lift);
+            let inertia = start.iter().fold([[0.0; 3]; 3], |mut sum, p| {
+                let r = f64s(p.position - Vec3::Y * lift);
+                let square: f64 = r.iter().map(|a| a * a).sum();
+                for (i, row) in sum.iter_mut().enumerate() {
+                    for (j, cell) in row.iter_mut().enumerate() {
+                        *cell += if i == j { square } else { 0.0 } - r[i] * r[j];
+                    }
+                }
+                sum
+            });
+            let lever = cross(r, [0.0, 1.0, 0.0]);
+            let turned = solved(inertia, lever);
+            let weight = 1.0 / 8.0 + (0..3).map(|k| lever[k] * turned[k]).sum::<f64>();
+            let came = f64::from(lowest.velocity.y);
+            let right = -(1.0 + f64::from(elasticity)) * came / weight;
+            let name = format!("{number}: {half}, e {elasticity}, {method}, {substeps}");
+            assert!((impulse / right - 1.0).abs() < 0.03, "{name}: {impulse} for {right}");
+            assert!(after.energy.kinetic < before.energy.kinetic * (1.0 + 1e-4), "{name}");
+            assert!((after.momentum[0] - before.momentum[0]).abs() < 1e-3, "{name}: it is smooth");
+            assert!(bent(&start, system.particles().position) < 1e-4, "{name}");
+        }
+    }
+}
+
+/// x of A x = b, by Cramer's rule.
+fn solved(a: [[f64; 3]; 3], b: [f64; 3]) -> [f64; 3] {
+    let determinant = |[x, y, z]: [[f64; 3]; 3]| (0..3).map(|k| x[k] * cross(y, z)[k]).sum::<f64>();
+    // Symmetric: its rows are its columns.
+    [0, 1, 2].map(|k| {
+        let mut with = a;
+        with[k] = b;
+        determinant(with) / determinant(a)
+    })
+}

@@ -143,7 +143,7 @@ struct Keeper;
 impl Constraint for Keeper {
     fn demand(&self) -> Demand {
         let words = |fixed| Words { per_row: 1, fixed };
-        Demand { kept: words(1000), step: words(900), scratch: words(90), finds_near: false }
+        Demand { kept: words(1000), step: words(900), scratch: words(90), ..Demand::NONE }
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

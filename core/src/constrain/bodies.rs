@@ -88,6 +88,8 @@ pub struct Bodies<'a> {
     /// Particles of the scene's start that found room.
     pub(crate) start: u32,
     pub(crate) marks: &'a mut [u32],
+    /// For each the name of what it is bound in, zero for none; empty where nothing binds.
+    pub(crate) bound: &'a mut [u32],
     pub(crate) observer: &'a mut dyn Observer,
 }
 
@@ -141,6 +143,7 @@ impl Bodies<'_> {
             pending_death: self.pending_death,
             start: self.start,
             marks: self.marks,
+            bound: self.bound,
             observer: self.observer,
         }
     }
@@ -213,10 +216,29 @@ impl Bodies<'_> {
         self.marks[row] |= SHIFTED | TOUCHING;
     }
 
+    /// Says that the particle in a row is held in its place to all others that are bound by the same name, through the step: contacts between
+    /// them are none. Names above zero by which nothing else binds are those of its particles, plus one; who is bound twice is so by the last name.
+    pub fn bind(&mut self, row: usize, name: u32) {
+        if let Some(bound) = self.bound.get_mut(row) {
+            *bound = name;
+        }
+    }
+
+    /// Tells whether two are held in their places to each other.
+    #[must_use]
+    pub fn are_bound(&self, row: usize, other: usize) -> bool {
+        are_bound(self.bound, row, other)
+    }
+
     /// Tells whether it has been said of the particle in a row that it is kept from a surface, in this sub-step.
     pub(crate) fn is_touching(&self, row: usize) -> bool {
         self.marks[row] & TOUCHING != 0
     }
+}
+
+/// Tells whether two are bound by one name.
+pub(super) fn are_bound(bound: &[u32], row: usize, other: usize) -> bool {
+    matches!((bound.get(row), bound.get(other)), (Some(&a), Some(&b)) if a == b && a != 0)
 }
 
 /// Finds who is near whom, by the scene's index.

@@ -157,6 +157,9 @@ impl Constraint for ConstraintKind {
     fn demand(&self) -> Demand {
         self.get().demand()
     }
+    fn bind(&self, bodies: &mut Bodies<'_>) {
+        self.get().bind(bodies);
+    }
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         self.get().prepare(bodies, share);
     }

@@ -109,6 +109,12 @@ pub trait Constraint: Sync {
         Some(ConstraintCode::ALL)
     }
 
+    /// Says at a step's beginning, before any constraint looks on, which particles it holds in their places to each other ([`Bodies::bind`]): others
+    /// leave those alone. It is called if it [demands](Demand::binds) so.
+    fn bind(&self, bodies: &mut Bodies<'_>) {
+        let _ = bodies;
+    }
+
     /// Looks on before the method moves everything through a sub-step: to list who may touch whom, for instance.
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let _ = (bodies, share);
@@ -145,6 +151,10 @@ fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment
     match moment {
         Moment::Before => {
             let (mut bodies, mut share) = moved.lend(substep);
+            if substep.number == 0 && !bodies.bound.is_empty() {
+                bodies.bound.fill(0);
+                constraints.bind(&mut bodies);
+            }
             constraints.prepare(&mut bodies, &mut share);
         }
         Moment::After => {
@@ -179,6 +189,9 @@ impl<T: Constraint + ?Sized> Constraint for &T {
     fn code(&self) -> Option<ConstraintCode> {
         (**self).code()
     }
+    fn bind(&self, bodies: &mut Bodies<'_>) {
+        (**self).bind(bodies);
+    }
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         (**self).prepare(bodies, share);
     }
@@ -212,6 +225,12 @@ macro_rules! all_of {
                 }
             }
             true
+        }
+        fn bind(&self, bodies: &mut Bodies<'_>) {
+            let $this = self;
+            for part in $parts {
+                part.bind(bodies);
+            }
         }
         all_of!(@phase prepare, $this => $parts);
         all_of!(@phase begin, $this => $parts);

@@ -33,8 +33,9 @@ pub(crate) struct Moved<'a> {
     /// Places and velocities at the sub-step's beginning; empty where nobody asks.
     pub(crate) start: [&'a [Vec3]; 2],
     pub(crate) pending_death: &'a [PendingDeath],
-    /// A mark for each of what constraints do to it, and the words that they keep through the step.
+    /// A mark for each of what constraints do to it, a name of what it is bound in, and the words that they keep through the step.
     pub(crate) marks: &'a mut [u32],
+    pub(crate) bound: &'a mut [u32],
     pub(crate) lasting: &'a mut [u32],
     pub(crate) lists: ListMemory<'a>,
     /// The words kept from step to step, for writing where there are constraints.
@@ -81,6 +82,7 @@ impl Moved<'_> {
             pending_death: self.pending_death,
             start: lives.springs.start,
             marks: self.marks,
+            bound: self.bound,
             observer: self.observer,
         };
         (bodies, Share { kept, step: self.lasting, scratch, capacity })

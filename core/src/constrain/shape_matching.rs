@@ -3,6 +3,7 @@
 #[cfg(feature = "alloc")]
 use super::declared::{Declared, twice};
 use super::turn::{Turn, about, keeping, moment, nearest, outer, solve};
+use super::walls::{self, Wall, Whole};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{dot, max, sqrt};
 #[cfg(feature = "alloc")]
@@ -219,6 +220,35 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         kept[OWED..HEAD].copy_from_slice(&owed.to_array().map(f32::to_bits));
     }
 
+    /// Takes so large a share of how fast particles move against the motion of the whole that has the same momenta, and keeps how that is held; tells
+    /// the sum of r rᵀ over the mass.
+    fn share_speed(&self, bodies: &mut Bodies<'_>, kept: &mut [u32], body: &mut Body, taken: f32) -> Mat3 {
+        let (spin, spread) = self.spin(bodies, kept, body);
+        let spin = spin + Self::owed(kept);
+        if body.fixed > 1 {
+            body.hold = self.hold(bodies, kept, body, &mut Turn::kept(kept));
+        }
+        let omega = match body.hold {
+            Hold::Free => solve(spread, spin),
+            Hold::About { axis, omega } => omega + axis * about(axis, spread, spin - moment(spread, omega)),
+            Hold::Fast { omega } => omega,
+        };
+        if !(taken > 0.0) {
+            return spread;
+        }
+        self.each(bodies, kept, &mut |bodies, member| {
+            let rigid = body.drift + omega.cross(body.place(bodies, member.row));
+            let by = (rigid - bodies.velocity[member.row]) * taken;
+            if !member.fixed && by.is_finite() {
+                bodies.velocity[member.row] += by;
+            }
+        });
+        if let Hold::Free = body.hold {
+            self.owe(bodies, kept, body, spin);
+        }
+        spread
+    }
+
     /// The rotation that keeps the angular momentum, or else the nearest one.
     fn turn(&self, bodies: &mut Bodies<'_>, kept: &[u32], body: &Body, last: Turn) -> Turn {
         let h = bodies.substep.seconds();
@@ -245,11 +275,24 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
 impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     fn demand(&self) -> Demand {
         let places = self.particles.as_ref().len().saturating_mul(3);
-        Demand { kept: Words { per_row: 0, fixed: places.saturating_add(HEAD) }, ..Demand::NONE }
+        let walls = self.particles.as_ref().len().saturating_mul(walls::WORDS);
+        let (kept, step) =
+            (Words { per_row: 0, fixed: places.saturating_add(HEAD) }, Words { per_row: 0, fixed: walls });
+        Demand { kept, step, binds: true, ..Demand::NONE }
     }
 
     fn is_empty(&self) -> bool {
         self.particles.as_ref().len() < 2
+    }
+
+    fn bind(&self, bodies: &mut Bodies<'_>) {
+        let particles = self.particles.as_ref();
+        let Some(&first) = particles.first() else { return };
+        for &number in particles {
+            if let Some(row) = bodies.row_of_start(number) {
+                bodies.bind(row, first.wrapping_add(1));
+            }
+        }
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -259,7 +302,9 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let (h, kept) = (bodies.substep.seconds(), &mut *share.kept.fixed);
+        let (h, kept, particles) = (bodies.substep.seconds(), &mut *share.kept.fixed, self.particles.as_ref());
+        let walls = walls::of(share.step, particles.len());
+        walls::gather(walls, particles, bodies);
         let Some(mut body) = self.body(bodies, kept) else { return };
         if !(h > 0.0) {
             return;
@@ -302,37 +347,38 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         if let Hold::Free = body.hold {
             self.owe(bodies, kept, &now, spin);
         }
+        if walls.iter().any(Wall::is_near) {
+            now.hold = body.hold;
+            let whole = now.whole(spread, give);
+            let moved = whole.press(walls, bodies);
+            self.each(bodies, kept, &mut |bodies, member| {
+                let by = whole.moves(bodies, member.row, &moved);
+                if !member.fixed && by.is_finite() {
+                    bodies.shift(member.row, by);
+                }
+            });
+        }
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let kept = &mut *share.kept.fixed;
-        let Some(body) = self.body(bodies, kept) else { return };
+        let (kept, particles) = (&mut *share.kept.fixed, self.particles.as_ref());
+        let walls = walls::of(share.step, particles.len());
+        let Some(mut body) = self.body(bodies, kept) else { return };
         let brake = self.damping * bodies.substep.seconds() / body.mass;
         let taken = if self.compliance > 0.0 { brake / (1.0 + brake) } else { 1.0 };
-        if !(taken > 0.0) {
-            return;
+        let spread = self.share_speed(bodies, kept, &mut body, taken);
+        if walls.iter().any(Wall::is_near) {
+            let whole = body.whole(spread, taken);
+            let faster = whole.answer(walls, bodies);
+            self.each(bodies, kept, &mut |bodies, member| {
+                let by = whole.moves(bodies, member.row, &faster);
+                if !member.fixed && by.is_finite() {
+                    bodies.velocity[member.row] += by;
+                }
+            });
+            walls::report(walls, bodies);
         }
-        let (spin, spread) = self.spin(bodies, kept, &body);
-        let spin = spin + Self::owed(kept);
-        let hold = match body.fixed {
-            0 | 1 => Hold::Free,
-            _ => self.hold(bodies, kept, &body, &mut Turn::kept(kept)),
-        };
-        let omega = match hold {
-            Hold::Free => solve(spread, spin),
-            Hold::About { axis, omega } => omega + axis * about(axis, spread, spin - moment(spread, omega)),
-            Hold::Fast { omega } => omega,
-        };
-        self.each(bodies, kept, &mut |bodies, member| {
-            let rigid = body.drift + omega.cross(body.place(bodies, member.row));
-            let by = (rigid - bodies.velocity[member.row]) * taken;
-            if !member.fixed && by.is_finite() {
-                bodies.velocity[member.row] += by;
-            }
-        });
-        if let Hold::Free = hold {
-            self.owe(bodies, kept, &body, spin);
-        }
+        walls::follow(walls, bodies);
     }
 }
 
@@ -373,6 +419,28 @@ impl Body {
     /// Where a particle is, from the centre.
     fn place(&self, bodies: &Bodies<'_>, row: usize) -> Vec3 {
         bodies.position[row] - self.origin - self.center
+    }
+
+    /// How it answers a push at a particle, of which all bear a share, by the sum of r rᵀ over the mass.
+    fn whole(&self, spread: Mat3, share: f32) -> Whole {
+        let inverse = match self.hold {
+            Hold::Free => [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| solve(spread, axis)),
+            Hold::About { axis, .. } => {
+                let [x, y, z] = axis.to_array().map(|part| about(axis, spread, axis * part));
+                [axis * x, axis * y, axis * z]
+            }
+            Hold::Fast { .. } => [Vec3::ZERO; 3],
+        };
+        let rate = 1.0 / self.mass;
+        let [x, y, z] = inverse.map(|column| column * rate);
+        let inverse_mass = if self.fixed > 0 { 0.0 } else { rate };
+        Whole {
+            origin: self.origin,
+            center: self.center,
+            inverse_mass,
+            inverse_inertia: Mat3::from_cols(x, y, z),
+            share,
+        }
     }
 
     /// What it weighs in rotations, a share of the mass.

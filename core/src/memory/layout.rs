@@ -55,11 +55,14 @@ pub struct Demand {
     pub scratch: Words,
     /// True if it asks who is near.
     pub finds_near: bool,
+    /// True if it says which particles it holds in their places to each other ([`Constraint::bind`](crate::Constraint::bind)).
+    pub binds: bool,
 }
 
 impl Demand {
     /// Nothing.
-    pub const NONE: Self = Self { kept: Words::NONE, step: Words::NONE, scratch: Words::NONE, finds_near: false };
+    pub const NONE: Self =
+        Self { kept: Words::NONE, step: Words::NONE, scratch: Words::NONE, finds_near: false, binds: false };
 
     /// The demand of two parts together.
     #[must_use]
@@ -69,6 +72,7 @@ impl Demand {
             step: self.step.and(other.step),
             scratch: self.scratch.or(other.scratch),
             finds_near: self.finds_near || other.finds_near,
+            binds: self.binds || other.binds,
         }
     }
 }
@@ -140,15 +144,16 @@ impl Plan {
         Words { fixed: index_words(), ..Words::columns(self.index) }
     }
 
-    /// Marks, and words that constraints keep through the step, for so many particles.
-    fn marks_and_step(&self, capacity: usize) -> [usize; 2] {
-        [if self.constrained { capacity } else { 0 }, self.constraints.step.of(capacity)]
+    /// Marks, names of what particles are bound in, and words that constraints keep through the step, for so many particles.
+    fn through_step(&self, capacity: usize) -> [usize; 3] {
+        let column = |is_there| if is_there { capacity } else { 0 };
+        [column(self.constrained), column(self.constraints.binds), self.constraints.step.of(capacity)]
     }
 
-    /// Both.
+    /// All of them.
     fn lasting(&self, capacity: usize) -> usize {
-        let [marks, step] = self.marks_and_step(capacity);
-        marks.saturating_add(step)
+        let [marks, bound, step] = self.through_step(capacity);
+        marks.saturating_add(bound).saturating_add(step)
     }
 
     /// The words that its phases need in turn.
@@ -184,6 +189,8 @@ pub(crate) struct Shares<'m> {
     pub(crate) start: [&'m mut [Vec3]; 2],
     /// A mark for each particle of what constraints have done to it.
     pub(crate) marks: &'m mut [u32],
+    /// A name for each particle of what holds it in its place to others; empty if nothing does.
+    pub(crate) bound: &'m mut [u32],
     /// The words that constraints keep through the step.
     pub(crate) step: &'m mut [u32],
     /// For whatever is at work.
@@ -285,11 +292,12 @@ impl Layout {
         };
         let pair = if self.plan.start { self.capacity } else { 0 };
         let start = [take(&mut rest, pair), take(&mut rest, pair)];
-        let [marks, step] = self.plan.marks_and_step(self.capacity);
+        let [marks, bound, step] = self.plan.through_step(self.capacity);
         let mut lasting = bytemuck::cast_slice_mut(take(&mut rest, self.lasting));
         Shares {
             start,
             marks: take(&mut lasting, marks),
+            bound: take(&mut lasting, bound),
             step: take(&mut lasting, step),
             scratch: Scratch { vectors: rest, index, layout: self },
             lists: bytemuck::cast_slice_mut(lists),

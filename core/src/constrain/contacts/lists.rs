@@ -1,5 +1,6 @@
 //! The lists of contacts held by position: who may touch whom, made anew when somebody has gone far.
 
+use super::super::bodies::are_bound;
 use super::super::{Bodies, Substep, Words};
 use super::touch::Touch;
 use crate::index::between;
@@ -120,9 +121,12 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
     }
     let (middle, lists, room) = (&*middle, &mut *kept.lists, &mut *kept.pairs);
     let around = bodies.near.room();
-    let Bodies { velocity, radius, inverse_mass, material, elasticity, materials, report, near, .. } = bodies;
+    let Bodies { velocity, radius, inverse_mass, material, elasticity, materials, report, near, bound, .. } = bodies;
     near.pairs(middle, reach, &mut |row, other| {
         let (a, b) = (row as usize, other as usize);
+        if are_bound(bound, a, b) {
+            return;
+        }
         let way = length(velocity[a] - velocity[b]) * half;
         let near = radius[a] + radius[b] + MARGIN * min(radius[a], radius[b]) + way;
         let d = between(around, middle[b], middle[a]);

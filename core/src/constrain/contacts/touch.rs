@@ -28,7 +28,7 @@ impl Touch {
     }
 
     /// Tells whether the two touch in this sub-step.
-    pub(super) fn is_on(&self) -> bool {
+    pub(in crate::constrain) fn is_on(&self) -> bool {
         self.pressed >= 0.0
     }
 
@@ -56,7 +56,7 @@ impl Touch {
         self.is_on() && self.has_friction()
     }
 
-    pub(super) fn end(&mut self) {
+    pub(in crate::constrain) fn end(&mut self) {
         self.pressed = -1.0;
     }
 

@@ -101,7 +101,7 @@ pub(super) fn demand([particles, triangles]: [usize; 2]) -> Demand {
     let step = sum([lasting.saturating_add(near::words(particles)), contacts, surfaces]);
     let learning = sum([0, each(particles, LEARNING[0]), each(triangles, LEARNING[1])]);
     let working = sum([each(particles, 19), contacts, tree::words([particles, triangles])]);
-    Demand { kept, step, scratch: learning.or(working), finds_near: false }
+    Demand { kept, step, scratch: learning.or(working), ..Demand::NONE }
 }
 
 impl<'m> Kept<'m> {

@@ -1,13 +1,15 @@
 //! The scenery as what holds together meets it within a sub-step: walls that press particles while the material gives way, so that a hit on a few
 //! of them is one on all that hangs on them.
 
+mod as_one;
 mod follow;
 mod settle;
 mod solve;
 mod tell;
 
+pub(super) use as_one::Whole;
 pub(super) use follow::follow;
-pub(super) use settle::settle;
+pub(super) use settle::{report, settle};
 pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, meet};
 
 use super::contacts::{TangentImpulse, Touch};
@@ -181,6 +183,11 @@ impl Wall {
     /// Tells whether it has pressed its particle in the sub-step.
     pub(super) fn is_met(&self) -> bool {
         self.state != NONE && self.touch.pressed() > 0.0
+    }
+
+    /// Tells whether its particle is where it touches it.
+    fn touches(&self, bodies: &Bodies<'_>) -> bool {
+        bodies.position[self.row as usize].dot(self.normal) < self.offset + 0.5 * self.slack
     }
 
     /// A speed as seen from it without what would go into it, if it has pressed its particle.

@@ -8,11 +8,9 @@ use crate::math::aside;
 
 /// Lets particles leave walls as fast as elasticity wants, and takes what friction can of their slip by all that has pressed.
 pub(in crate::constrain) fn settle(walls: &mut [Wall], bodies: &mut Bodies<'_>) {
-    let watched = bodies.is_watched();
     for wall in walls.iter_mut().filter(|wall| wall.state != NONE) {
         let (row, normal) = (wall.row as usize, wall.normal);
-        let near = || bodies.position[row].dot(normal) < wall.offset + 0.5 * wall.slack;
-        if !(wall.touch.pressed() > 0.0 || near()) {
+        if !(wall.touch.pressed() > 0.0 || wall.touches(bodies)) {
             continue;
         }
         let wanted = bounce(&bodies.substep, wall.touch.elasticity, wall.ends(bodies));
@@ -22,12 +20,18 @@ pub(in crate::constrain) fn settle(walls: &mut [Wall], bodies: &mut Bodies<'_>) 
             let slip = aside(bodies.velocity[row] - wall.velocity, normal);
             bodies.velocity[row] += wall.tangent.hold(&wall.touch, slip, wall.touch.pressed());
         }
-        if wall.touch.pressed() > 0.0 {
-            bodies.report.hits += 1;
-            bodies.mark_touching(row);
-            if watched {
-                tell(wall, bodies);
-            }
+    }
+    report(walls, bodies);
+}
+
+/// Counts what walls have pressed, and tells whoever watches.
+pub(in crate::constrain) fn report(walls: &[Wall], bodies: &mut Bodies<'_>) {
+    let watched = bodies.is_watched();
+    for wall in walls.iter().filter(|wall| wall.is_met()) {
+        bodies.report.hits += 1;
+        bodies.mark_touching(wall.row as usize);
+        if watched {
+            tell(wall, bodies);
         }
     }
 }
