@@ -491,7 +491,8 @@ fn a_box_of_points_lies_and_slides_as_a_block_does() {
             let name = format!("{method}, {degrees}°, {mu}, {substeps}, {size} m");
             let step = 9.81 * sin / 60.0 / substeps as f32;
             assert!((mean.dot(down) - right).abs() < 0.01 * right + step + 1e-4, "{name}: {mean} for {right}");
-            assert!(way.clone().all(|way| (way - mean).length() < 1e-3), "{name}: it turns");
+            let most = way.clone().map(|way| (way - mean).length()).fold(0.0, f32::max);
+            assert!(most < 1e-3, "{name}: it turns by {most}");
             assert!(mean.dot(up).abs() < 1e-3, "{name}: {}", mean.dot(up));
         }
     }

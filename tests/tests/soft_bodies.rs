@@ -325,17 +325,20 @@ fn what_cannot_be_filled_is_refused_by_name() {
 }
 
 /// Balls that overlap where they begin get a remark, if they answer each other's touch: in a box they are as far apart as whole numbers of cells allow.
+/// Contacts by position leave those of one body alone.
 #[test]
 fn a_body_whose_balls_overlap_gets_a_remark() {
     let position = r#""contacts": {"position": {}},"#;
+    let force = r#""contacts": {"force": {"stiffness": 1000}},"#;
     for (spacing, radius, contacts, is_odd) in [
-        (0.1, r#", "radius": 0.08"#, position, true),
+        (0.1, r#", "radius": 0.08"#, force, true),
         (0.1, r#", "radius": 0.08"#, "", false),
-        (0.1, r#", "radius": 0.05"#, position, false),
+        (0.1, r#", "radius": 0.05"#, force, false),
+        (0.1, r#", "radius": 0.08"#, position, false),
         (0.1, "", r#""contacts": {"impulse": {}},"#, false),
-        (0.3, r#", "radius": 0.16"#, position, false),
-        (0.35, r#", "radius": 0.17"#, position, true),
-        (0.66, "", position, true),
+        (0.3, r#", "radius": 0.16"#, force, false),
+        (0.35, r#", "radius": 0.17"#, force, true),
+        (0.66, "", r#""contacts": {"impulse": {}},"#, true),
     ] {
         let text = format!(
             r#"{{{contacts} "soft_bodies": [{{"form": {{"box": [1, 1, 1]}}, "spacing": {spacing}, "density": 100,

@@ -28,11 +28,14 @@ use glam::{Mat3, Vec3};
 /// of m / (M α). A damping β takes from their speeds against the rigid motion what a force β times that speed does, shared likewise.
 /// Both hold whatever the sub-steps, as the step that takes them is implicit (Macklin, Müller and Chentanez, "XPBD", MIG 2016).
 ///
-/// What holds single particles back (contacts, links) is listed behind it: velocities are shared among all at the sub-step's end, and places
-/// in the next sub-step, so that a blow on one of n takes about n sub-steps to stop all of them. Until then it is a little out of shape.
+/// The scenery presses the cluster while it is solved: an impulse at a particle that meets it moves all of it, as what is rigid or gives way that
+/// softly answers, with friction and elasticity, and particles that touch at once share the load. So a block of eight corners slides, bounces and rests as a
+/// block does, and a drum of points on its rim rolls as its inertia says. Only particles meet the scenery, as balls of their radius: what
+/// is pointed may reach in between them. [`RigidBodies`](crate::RigidBodies) meet it, and each other, as boxes and hulls.
 ///
-/// Where [`Contacts`](super::Contacts) keep balls apart, those of one cluster must not overlap in its shape: they would be pushed apart in each sub-step
-/// and pulled back, which may throw it about.
+/// What else holds single particles back (contacts with balls, links) is listed behind it: velocities are shared among all at the sub-step's end, and
+/// places in the next sub-step, so that a blow on one of n takes about n sub-steps to stop all of them. Until then it is a little out of shape.
+/// [`Contacts`](super::Contacts) leave balls of one cluster alone, so those may overlap.
 ///
 /// Whoever is fixed stays: about one that is fixed the others swing, about two they turn, and three hold all of them. Whoever has died is
 /// left out. Lines and planes of particles are bodies as good as any; one particle alone, or all in one place, are not bound.
