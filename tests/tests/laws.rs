@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod alike;
+mod all_pairs;
 mod balls;
 #[path = "barnes_hut/main.rs"]
 mod barnes_hut;
