@@ -189,7 +189,14 @@ fn who_bounces_twice_is_told_of_twice() {
 fn nobody_is_told_of_who_rests_in_a_heap() {
     let heap = Penalty { stiffness: 5e3, damping: 0.5, ..PENALTY };
     let walls = Cuboid { min: Vec3::splat(-0.4), max: Vec3::new(0.4, 5.0, 0.4) };
-    for (method, rate, substeps) in [(Method::Symplectic, 60, 8)] {
+    let cases = [
+        (Method::Symplectic, 60, 8),
+        (Method::Verlet, 60, 20),
+        (Method::Implicit, 240, 2),
+        (Method::Rk4, 120, 4),
+        (Method::Rk4, 500, 1),
+    ];
+    for (method, rate, substeps) in cases {
         let mut start = gas(3, 75);
         start.iter_mut().for_each(|ball| (ball.velocity, ball.elasticity) = (ball.velocity * 0.2, 0.2));
         start.iter_mut().for_each(|ball| ball.position = ball.position * Vec3::new(0.3, 1.0, 0.3) + Vec3::Y * 0.5);
