@@ -38,6 +38,7 @@ mod indices;
 mod integrators;
 mod isotropic_sheets;
 mod ledger;
+mod lengths;
 mod likeness;
 mod lives;
 mod looks;
