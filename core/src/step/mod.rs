@@ -11,7 +11,7 @@ mod tell;
 mod tile;
 mod write;
 
-use crate::collide::Passage;
+use crate::collide::Swept;
 use crate::constrain::Substep;
 use crate::index::Listed;
 use crate::memory::{Layout, TILED, Workspace};
@@ -109,7 +109,7 @@ impl Workspace<'_> {
     ) {
         let ([now, end], met) = (substep.during, report.hits + report.contacts);
         let tile = &mut self.tile(scene, layout, [now, end - now], old);
-        scene.meetings.follow(Passage { tile, paths: scene.paths, index: scene.index, report: &mut *report, observer });
+        scene.meetings.follow(Swept { tile, paths: scene.paths, index: scene.index, report: &mut *report, observer });
         if report.hits + report.contacts > met {
             self.status.hint = Time::ZERO;
         }
