@@ -42,7 +42,7 @@ pub enum EventKind {
 /// Records of a step in memory that its owner lends: watch with it by [`System::step_observed`](crate::System), read, clear.
 ///
 /// Events that find no room are counted; nothing is overwritten. What rests on a collider hits it in every step. Contacts held by position
-/// are recorded where they begin, faster than what rests meets in a step; those by force are no hits, and there are no records of them.
+/// and those by force are recorded where they begin, faster than what rests meets in a step.
 ///
 /// ```
 /// use pointmass::shape::Plane;

@@ -2,6 +2,7 @@
 
 use crate::custom::CustomColumnsMut;
 use crate::force::State;
+use crate::math::max;
 use crate::particles::Id;
 use crate::reap::Cause;
 use crate::time::Time;
@@ -59,8 +60,8 @@ pub trait Observer {
         let _ = hit;
     }
 
-    /// A constraint keeps a particle from a collider or from another particle, with which it came together faster than what
-    /// rests does in a step: told once, at the sub-step's end.
+    /// A constraint or a force keeps a particle from a collider or from another particle, with which it came together faster than what
+    /// rests does in a step: told once, at the sub-step's end. A force has only begun to push then, so the velocity after is that at this end.
     fn touched(&mut self, touch: &Impact) {
         let _ = touch;
     }
@@ -239,6 +240,14 @@ pub struct Impact {
     pub surface: Vec3,
     /// The instant.
     pub time: Time,
+}
+
+/// How fast two came together that parted at the first speed before forces pressed them, and at the second one then \[m/s\]; none, if that is no more
+/// than forces give what rests in a step of so many sub-steps.
+pub(crate) fn closing([begun, ended]: [f32; 2], substeps: u32) -> Option<f32> {
+    let rests = substeps as f32 * max(begun - ended, 0.0);
+    let closing = max(-begun, -ended);
+    (closing > rests && closing < f32::INFINITY).then_some(closing)
 }
 
 /// How something goes on that rests on a surface: in the world, and as seen from the surface, along which friction acts. Of

@@ -38,7 +38,7 @@ pub struct Effort {
     pub lists: u64,
     /// Evaluations for which neighbours were looked up in an index, without a list.
     pub streamed: u64,
-    /// Evaluations for which all pairs were looked at.
+    /// Evaluations for which all pairs were looked at, as there was no index; and likewise searches of constraints, births, deaths and meetings by impulse.
     pub all_pairs: u64,
     /// Steps that a method which chooses its own accepted.
     pub accepted: u64,

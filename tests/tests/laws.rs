@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod alike;
+mod all_pairs;
 mod balls;
 #[path = "barnes_hut/main.rs"]
 mod barnes_hut;
@@ -37,6 +38,7 @@ mod indices;
 mod integrators;
 mod isotropic_sheets;
 mod ledger;
+mod lengths;
 mod likeness;
 mod lives;
 mod looks;

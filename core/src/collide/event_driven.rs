@@ -109,6 +109,7 @@ impl EventDriven<'_> {
             self.foresee(row, near);
             self.foresee(other, near);
         }
+        self.report.effort.all_pairs += u64::from(near.is_none());
     }
 
     /// Tells whether a particle's present path leads where the index is not asked to look for it.

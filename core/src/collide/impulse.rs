@@ -1,8 +1,8 @@
 //! Particles that meet, answered by impulses in the order in which they meet.
 
 use super::event_driven::EventDriven;
-use super::passage::Passage;
 use super::queue::Queue;
+use super::swept::Swept;
 use super::tile::Tile;
 use crate::force::Attributes;
 use crate::memory::Shares;
@@ -12,13 +12,13 @@ pub(super) const COLUMNS: usize = 4;
 
 /// Follows all through the step.
 #[inline(never)]
-pub(super) fn follow(passage: Passage<'_, '_>) {
-    let Passage { tile: Tile { attributes, .. }, .. } = &passage;
+pub(super) fn follow(swept: Swept<'_, '_>) {
+    let Swept { tile: Tile { attributes, .. }, .. } = &swept;
     // Points meet nobody.
     if !attributes.lives.radius.iter().any(|&radius| radius > 0.0) {
-        return passage.each_by_itself();
+        return swept.each_by_itself();
     }
-    let Passage { tile, index, report, observer, .. } = passage;
+    let Swept { tile, index, report, observer, .. } = swept;
     let (len, room) = (tile.position.len(), index.room());
     let Attributes { lives, inverse_mass, elasticity, .. } = tile.attributes;
     let Shares { start: [start_x, start_v], scratch, .. } = tile.layout.shares(tile.work);

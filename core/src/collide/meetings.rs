@@ -1,7 +1,7 @@
 //! How particles that have a radius meet each other on their way through a step.
 
 use super::impulse;
-use super::passage::Passage;
+use super::swept::Swept;
 
 /// The answer of particles that have a radius where their paths meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,7 +25,7 @@ pub enum Meetings {
 #[derive(Clone, Copy)]
 pub struct Impulse {
     /// The function that does it. A program that does not name it does not carry it about.
-    follow: fn(Passage<'_, '_>),
+    follow: fn(Swept<'_, '_>),
 }
 
 impl PartialEq for Impulse {
@@ -55,10 +55,10 @@ impl Meetings {
     }
 
     /// Sends every free particle along its path.
-    pub(crate) fn follow(&self, passage: Passage<'_, '_>) {
+    pub(crate) fn follow(&self, swept: Swept<'_, '_>) {
         match self {
-            Self::Through => passage.each_by_itself(),
-            Self::Impulse(Impulse { follow }) => follow(passage),
+            Self::Through => swept.each_by_itself(),
+            Self::Impulse(Impulse { follow }) => follow(swept),
         }
     }
 }

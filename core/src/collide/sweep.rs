@@ -4,6 +4,7 @@ use super::lead::Lead;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::tile::Obstacles;
+use crate::force::Friction;
 use crate::material::on_surface;
 use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, plus, scaled, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
@@ -45,6 +46,27 @@ pub(super) struct Meeting {
     hit: Hit,
     /// True if what it meets removes it.
     pub(super) is_sink: bool,
+}
+
+/// What a hit brings to rest on a surface.
+struct Landing {
+    /// Where it is set off to, and from when to when it goes on.
+    beside: Vec3,
+    during: [Time; 2],
+    /// How the surface moves there \[m/s\], and where it takes it, if it moves.
+    surface: Vec3,
+    ride: Option<Ride>,
+    /// The speed at which it parted from the surface before the hit \[m/s\], and the acceleration that presses it onto that \[m/s²\].
+    incoming: f32,
+    pressing: f32,
+    /// Its velocity along the surface, as seen from there, before friction and after it, and in the world after all \[m/s\].
+    came: Vec3,
+    slip: Vec3,
+    after: Vec3,
+    /// Its acceleration as seen from the surface, and in the world \[m/s²\].
+    drive: Vec3,
+    acceleration: Vec3,
+    friction: Friction,
 }
 
 /// The means to follow one particle past walls of a kind: any, or one that is known, for which the same is shorter.
@@ -263,7 +285,6 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
         let during = [path.instant(meeting.time), path.during[1]];
-        let rest = (during[1] - during[0]).seconds();
         let lead = self.lead(path, meeting.time, normal);
         let mut acceleration = path.acceleration();
         if let Some(lead) = &lead {
@@ -299,8 +320,31 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             self.lead_on(&lead, &mut onward, None);
             return onward;
         }
-        let drive = along(drive, normal, pressing);
-        let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(rest);
+        let friction = mixed.friction;
+        let landing = Landing {
+            beside,
+            during,
+            surface,
+            ride,
+            incoming,
+            pressing,
+            came,
+            slip,
+            after,
+            drive,
+            acceleration,
+            friction,
+        };
+        self.stay(path, meeting, &lead, landing)
+    }
+
+    /// The way on of what a hit brings to rest on a surface: along that and with it, for the time that is left.
+    #[inline(always)]
+    fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing) -> Path {
+        let Landing { beside, during, surface, ride, incoming, pressing, came, slip, after, .. } = landing;
+        let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
+        let drive = along(landing.drive, meeting.hit.normal, pressing);
+        let (way, end) = Slide { velocity: slip, drive, pressing, friction: landing.friction }.after(rest);
         let stays = is_zero(slip) && is_zero(end);
         let mut onward = if let Some(ride) = ride {
             // A particle that falls from where it was set off to goes along the surface meanwhile, which friction would
@@ -322,10 +366,10 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         };
         let along = [drive, way, slip, end];
         if let Some(observer) = &mut self.observer {
-            let world = [acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];
-            observer.slid(&Sliding { mass, raised: minus(onward.x0, place), world, along });
+            let world = [landing.acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];
+            observer.slid(&Sliding { mass: self.mass, raised: minus(onward.x0, place), world, along });
         }
-        self.lead_on(&lead, &mut onward, Some(&along));
+        self.lead_on(lead, &mut onward, Some(&along));
         onward
     }
 

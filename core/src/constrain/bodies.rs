@@ -135,7 +135,7 @@ impl Bodies<'_> {
             substep: self.substep,
             colliders: self.colliders,
             materials: self.materials,
-            near: Near { index: self.near.index, memory: self.near.memory },
+            near: self.near.again(),
             report: self.report,
             slot: self.slot,
             serial: self.serial,
@@ -245,6 +245,8 @@ pub(super) fn are_bound(bound: &[u32], row: usize, other: usize) -> bool {
 pub struct Near<'a> {
     pub(crate) index: &'a dyn IndexChoice,
     pub(crate) memory: &'a mut [u32],
+    /// Counts searches that looked at all pairs.
+    pub(crate) all_pairs: &'a mut u64,
 }
 
 impl fmt::Debug for Near<'_> {
@@ -262,6 +264,11 @@ impl<'a> Near<'a> {
         self.index.room()
     }
 
+    /// The same, lent on.
+    fn again(&mut self) -> Near<'_> {
+        Near { index: self.index, memory: self.memory, all_pairs: self.all_pairs }
+    }
+
     /// Puts points into an index, and calls `then` with a function that visits those within `reach` \[m\] of any place, by their rows: in an order of
     /// the index's own. In a [periodic room](crate::index::Periodic) they are near through its sides.
     pub fn ask(&mut self, points: &[Vec3], reach: f32, then: &mut dyn FnMut(&Around<'_>)) {
@@ -275,10 +282,13 @@ impl<'a> Near<'a> {
                     rows.iter().filter(sure).for_each(|&row| visit(row));
                 });
             }),
-            None => then(&|place, visit| {
-                let near = |&(_, &point): &(usize, &Vec3)| is_near(room, place, point, reach);
-                points.iter().enumerate().filter(near).for_each(|(row, _)| visit(row as u32));
-            }),
+            None => {
+                *self.all_pairs += u64::from(!points.is_empty());
+                then(&|place, visit| {
+                    let near = |&(_, &point): &(usize, &Vec3)| is_near(room, place, point, reach);
+                    points.iter().enumerate().filter(near).for_each(|(row, _)| visit(row as u32));
+                });
+            }
         });
     }
 
@@ -298,6 +308,7 @@ impl<'a> Near<'a> {
                 });
             }
             None => {
+                *self.all_pairs += u64::from(!points.is_empty());
                 for (row, &point) in points.iter().enumerate() {
                     let others = points[..row].iter().enumerate().filter(|&(_, &other)| near(point, other));
                     others.for_each(|(other, _)| visit(row as u32, other as u32));

@@ -147,10 +147,10 @@ impl ConstraintCode {
 
 /// Lets constraints move what the method has moved, or look on before, and says how far that has come.
 fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment, substep: Substep) {
-    let [_, end] = substep.during;
+    let ([_, end], mut all_pairs) = (substep.during, 0);
     match moment {
         Moment::Before => {
-            let (mut bodies, mut share) = moved.lend(substep);
+            let (mut bodies, mut share) = moved.lend(substep, &mut all_pairs);
             if substep.number == 0 && !bodies.bound.is_empty() {
                 bodies.bound.fill(0);
                 constraints.bind(&mut bodies);
@@ -160,13 +160,14 @@ fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment
         Moment::After => {
             moved.tell(Phase::Advance, end);
             moved.tell(Phase::Project, end);
-            let (mut bodies, mut share) = moved.lend(substep);
+            let (mut bodies, mut share) = moved.lend(substep, &mut all_pairs);
             constraints.begin(&mut bodies, &mut share);
             constraints.project(&mut bodies, &mut share);
             constraints.settle(&mut bodies, &mut share);
             moved.tell(Phase::Constrain, end);
         }
     }
+    moved.report.effort.all_pairs += all_pairs;
 }
 
 impl Constraint for () {

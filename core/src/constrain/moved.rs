@@ -54,9 +54,9 @@ impl Moved<'_> {
         self.observer.after(phase, &state);
     }
 
-    /// The bodies that constraints move, and the memory that they work in.
+    /// The bodies that constraints move, and the memory that they work in; searches among all pairs are counted.
     #[inline(never)]
-    pub(super) fn lend(&mut self, substep: Substep) -> (Bodies<'_>, Share<'_>) {
+    pub(super) fn lend<'s>(&'s mut self, substep: Substep, all_pairs: &'s mut u64) -> (Bodies<'s>, Share<'s>) {
         let Attributes { lives, inverse_mass, elasticity, .. } = *self.attributes;
         let (len, capacity) = (self.position.len(), self.layout.capacity());
         let [memory, scratch] = self.scratch.constraining();
@@ -74,7 +74,7 @@ impl Moved<'_> {
             substep,
             colliders: self.colliders,
             materials: lives.materials,
-            near: Near { index: self.index, memory },
+            near: Near { index: self.index, memory, all_pairs },
             report: self.report,
             slot: &lives.slot[..len],
             serial: &lives.springs.serial[..len],

@@ -28,6 +28,7 @@ mod spring_force;
 mod state;
 mod steady;
 mod viscosity;
+mod watched;
 mod wind;
 
 pub use aerodynamics::Aerodynamics;
@@ -44,8 +45,8 @@ pub use goal::Goal;
 pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
-pub use needs::{BuildTrees, Listing, Needs, Writing};
-pub(crate) use needs::{Finder, Written};
+pub use needs::{BuildTrees, Listing, Needs, Telling, Writing};
+pub(crate) use needs::{Finder, Told, Written};
 pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
@@ -61,6 +62,7 @@ pub use state::State;
 pub use steady::Steady;
 pub(crate) use steady::{Ends, Inertia};
 pub use viscosity::Viscosity;
+pub use watched::Watched;
 pub use wind::Wind;
 
 use crate::composed::composed;
@@ -129,6 +131,12 @@ pub trait Force: Sync {
     /// scene has no such columns nobody is asked.
     fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
         let _ = (state, custom, dt);
+    }
+
+    /// Tells whoever watches of those who have come to touch in a sub-step, if it [needs](Needs::tell) to: at the end of each, when all have moved and
+    /// been held against colliders. Where nobody watches, it is not asked.
+    fn tell(&self, watched: &mut Watched<'_>) {
+        let _ = watched;
     }
 
     /// Adds how the force on each particle changes as they move: (∂f/∂x) δx + (∂f/∂v) δv \[N\], for methods that solve for
@@ -229,6 +237,12 @@ macro_rules! sum_of {
                 part.write(state, custom, dt);
             }
         }
+        fn tell(&self, watched: &mut Watched<'_>) {
+            let $this = self;
+            for part in $parts {
+                part.tell(watched);
+            }
+        }
         fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
             let $this = self;
             for part in $parts {
@@ -315,6 +329,10 @@ macro_rules! same_as {
         fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
             let $this = self;
             $force.write(state, custom, dt);
+        }
+        fn tell(&self, watched: &mut $crate::force::Watched<'_>) {
+            let $this = self;
+            $force.tell(watched);
         }
         fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
             let $this = self;

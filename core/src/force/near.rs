@@ -29,6 +29,42 @@ pub(super) fn add_up(
     });
 }
 
+/// Pairs that are put in order at a time.
+const IN_ORDER: usize = if cfg!(target_os = "none") { 16 } else { 128 };
+
+/// Visits those pairs of neighbours that are wanted, each once, in ascending order of their rows, whatever order the index has: by going over all of them as
+/// often as there are more than can be put in order at a time.
+pub(super) fn in_order(
+    state: &State<'_>,
+    reach: f32,
+    is_wanted: impl Fn([usize; 2]) -> bool,
+    mut visit: impl FnMut([usize; 2]),
+) {
+    let mut done = None;
+    loop {
+        let (mut first, mut len) = ([[0; 2]; IN_ORDER], 0);
+        state.near.of(0..state.position.len(), reach, &mut |row, nearby| {
+            for other in nearby.rows().iter().map(|&other| other as usize) {
+                let pair = [row, other];
+                if row < other && Some(pair) > done && is_wanted(pair) {
+                    let place = first[..len].partition_point(|before| *before < pair);
+                    len = (len + 1).min(IN_ORDER);
+                    // The last one makes room.
+                    if let [place, behind @ ..] = &mut first[place..len] {
+                        let mut moved = core::mem::replace(place, pair);
+                        behind.iter_mut().for_each(|next| core::mem::swap(next, &mut moved));
+                    }
+                }
+            }
+        });
+        first[..len].iter().for_each(|&pair| visit(pair));
+        if len < IN_ORDER {
+            return;
+        }
+        done = Some(first[len - 1]);
+    }
+}
+
 /// The way from one row to another, in double precision \[m\].
 #[cfg(feature = "std")]
 pub(super) fn wide_between(state: &State<'_>, from: usize, to: usize) -> [f64; 3] {

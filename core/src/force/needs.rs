@@ -1,10 +1,11 @@
 //! The needs of forces: all that they have to find in the state.
 
-use super::{Attributes, State};
+use super::{Attributes, State, Watched};
 use crate::custom::{CustomColumns, CustomColumnsMut};
 use crate::index::{ARE_KEPT, BarnesHut, Found, IndexChoice, ListMemory, Neighbours, Search, StateIndex, find};
-use crate::math::max;
-use crate::memory::Layout;
+use crate::math::{length, max};
+use crate::memory::{Layout, Shares};
+use crate::observe::Observer;
 use crate::report::{Effort, Finding};
 use crate::time::Time;
 use glam::Vec3;
@@ -24,6 +25,10 @@ pub struct Listing(pub(crate) fn(&mut Finder<'_>, &State<'_>, Then<'_>));
 #[derive(Clone, Copy, Debug)]
 pub struct Writing(pub(crate) fn(Written<'_>));
 
+/// Lets forces tell whoever watches of those who have come to touch in a sub-step, likewise.
+#[derive(Clone, Copy, Debug)]
+pub struct Telling(pub(crate) fn(Told<'_>));
+
 /// All rows at a step's end, and the memory that is laid out for them.
 pub(crate) struct Written<'a> {
     pub(crate) needs: Needs,
@@ -37,6 +42,25 @@ pub(crate) struct Written<'a> {
     pub(crate) effort: &'a mut Effort,
     /// What changes the columns.
     pub(crate) write: &'a mut dyn FnMut(&State<'_>, &mut CustomColumnsMut<'_>),
+}
+
+/// All rows at the end of a sub-step that somebody watches, and the memory that is laid out for them: in it lies where they began.
+pub(crate) struct Told<'a> {
+    pub(crate) needs: Needs,
+    pub(crate) attributes: &'a Attributes<'a>,
+    pub(crate) custom: CustomColumns<'a>,
+    pub(crate) index: &'a dyn IndexChoice,
+    pub(crate) ends: [&'a [Vec3]; 2],
+    pub(crate) work: &'a mut [Vec3],
+    pub(crate) layout: &'a Layout,
+    pub(crate) during: [Time; 2],
+    /// The number of sub-steps, and how long all of them are \[s\].
+    pub(crate) substeps: u32,
+    pub(crate) step: f32,
+    pub(crate) observer: &'a mut dyn Observer,
+    /// What adds up all forces on all rows, and what lets them tell.
+    pub(crate) add: &'a dyn Fn(&State<'_>, &mut [Vec3]),
+    pub(crate) tell: &'a dyn Fn(&mut Watched<'_>),
 }
 
 /// The continuation with a state in which all is found.
@@ -55,6 +79,11 @@ impl Listing {
 impl Writing {
     /// That of all columns.
     pub const COLUMNS: Self = Self(write);
+}
+
+impl Telling {
+    /// By [`Force::tell`](super::Force::tell).
+    pub const TOUCHES: Self = Self(tell);
 }
 
 /// The particles that forces are asked about, from row `first` on, and the means to find what they need.
@@ -128,6 +157,39 @@ fn write(rows: Written<'_>) {
     effort.found(&finder.finding);
 }
 
+fn tell(rows: Told<'_>) {
+    let Told { needs, attributes, custom, index, ends: [position, velocity], work, layout, observer, .. } = rows;
+    let (len, Shares { start, mut scratch, .. }) = (position.len(), layout.shares(work));
+    let [x, v] = start.map(|column| &column[..len]);
+    let ([tree, near], memory, lasting) = scratch.moving();
+    let (index, finding) = (StateIndex::new(index, near, lasting), Finding::default());
+    // What forces fell back on to find neighbours has been counted when they moved everybody.
+    let mut finder = Finder { attributes, custom, needs, tree, index, lists: None, first: 0, finding };
+    finder.with_state(rows.during[1], position, velocity, &mut |now| {
+        let work_out = &mut |now: &State<'_>| {
+            let total = &mut memory[..len];
+            total.fill(Vec3::ZERO);
+            (rows.add)(now, total);
+            length(mean_acceleration(total, now.mass)) * rows.step
+        };
+        let (before, inverse_mass) = (now.moved(rows.during[0], x, v), attributes.inverse_mass);
+        let (now, substeps, observer) = (*now, rows.substeps, &mut *observer);
+        (rows.tell)(&mut Watched { before, now, inverse_mass, substeps, rests: None, work_out, observer });
+    });
+}
+
+/// The acceleration of all together by these forces; zero, if there is none to be told.
+fn mean_acceleration(forces: &[Vec3], masses: &[f32]) -> Vec3 {
+    let (mut sum, mut whole) = (Vec3::ZERO, 0.0);
+    for (&force, &mass) in forces.iter().zip(masses) {
+        if force.is_finite() && mass < f32::INFINITY {
+            (sum, whole) = (sum + force, whole + mass);
+        }
+    }
+    let mean = sum / whole;
+    if mean.is_finite() { mean } else { Vec3::ZERO }
+}
+
 fn build(finder: &mut Finder<'_>, state: &State<'_>, then: Then<'_>) {
     let (needs, memory) = (finder.needs, core::mem::take(&mut finder.tree));
     // No more memory than these particles call for: more would make other nodes, and so other bits.
@@ -176,6 +238,9 @@ pub struct Needs {
     /// To change columns of a user's own, by [`Force::write`](super::Force::write): [`Writing::COLUMNS`]. A function, likewise; without it a
     /// force is not asked to.
     pub write: Option<Writing>,
+    /// To tell whoever watches of those who have come to touch, by [`Force::tell`](super::Force::tell): [`Telling::TOUCHES`]. A function, likewise; without it
+    /// a force is not asked to. A system then keeps where all were as a sub-step began, which takes two vectors for each particle.
+    pub tell: Option<Telling>,
 }
 
 impl Needs {
@@ -194,6 +259,7 @@ impl Needs {
             reach: max(self.reach, other.reach),
             lists: self.lists.or(other.lists),
             write: self.write.or(other.write),
+            tell: self.tell.or(other.tell),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Balls that push each other apart.
 
-use super::near::add_up;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::{Force, Friction, Needs, Perturbation, State};
+use super::near::{add_up, in_order};
+use super::{Force, Friction, Needs, Perturbation, State, Telling, Watched};
 use crate::math::{length, max, min, sqrt};
 use core::ops::Range;
 use glam::Vec3;
@@ -15,6 +15,9 @@ use glam::Vec3;
 /// A hit lasts about π √(m / k); steps should be a tenth of that and less. Two balls whose closing speed is v sink v √(m / k)
 /// into each other: what goes farther than their radii in one step passes unhindered. Cundall and Strack, "A discrete
 /// numerical model for granular assemblies", Géotechnique 29, 1979.
+///
+/// [`Observer`](crate::Observer)s are told of two that overlap at the end of a sub-step and did not at its beginning
+/// ([`touched`](crate::Observer::touched)), so of each hit once, as it begins. What has bounced off within a sub-step, of a method that divides it, is not seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -99,7 +102,18 @@ impl Force for Penalty {
     }
 
     fn needs(&self) -> Needs {
-        Needs::within(self.reach)
+        let tell = (self.stiffness > 0.0).then_some(Telling::TOUCHES);
+        Needs { tell, ..Needs::within(self.reach) }
+    }
+
+    fn tell(&self, watched: &mut Watched<'_>) {
+        let Watched { before, now, .. } = *watched;
+        let begins = |rows| self.touch(&now, rows).is_some() && self.touch(&before, rows).is_none();
+        in_order(&now, self.reach, begins, |rows| {
+            if let Some(touch) = self.touch(&now, rows) {
+                watched.tell_pair(rows, touch.normal);
+            }
+        });
     }
 
     /// Along the line of centres; how the line turns, and friction, are left out.

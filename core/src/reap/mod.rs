@@ -97,12 +97,14 @@ pub(crate) struct Judged<'a> {
     pub(crate) pending_deaths: &'a mut [PendingDeath],
     /// The index by which to find who is near.
     pub(crate) index: StateIndex<'a>,
+    /// Counts searches that looked at all pairs.
+    pub(crate) all_pairs: &'a mut u64,
     /// Room for the places of those who live.
     pub(crate) places: &'a mut [Vec3],
 }
 
 fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
-    let Judged { state, pending_deaths, mut index, places } = judged;
+    let Judged { state, pending_deaths, mut index, all_pairs, places } = judged;
     let (rows, reach) = (0..pending_deaths.len(), reapers.reach());
     if reach <= 0.0 {
         return reapers.judge(&state, rows, &mut Verdicts::on(pending_deaths));
@@ -113,6 +115,7 @@ fn judge_all(reapers: &dyn Reaper, judged: Judged<'_>) {
     let (position, mut verdicts) = (&*places, Verdicts::on(pending_deaths));
     let room = index.choice().room();
     index.with(position, reach, &mut |near| {
+        *all_pairs += u64::from(near.is_none() && !position.is_empty());
         let near = Neighbours::by(near, position).in_room(room);
         reapers.judge(&State { position, near, ..state }, rows.clone(), &mut verdicts);
     });

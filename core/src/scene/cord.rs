@@ -229,6 +229,12 @@ impl Cord {
         }
         finite(&format!("{at}.elasticity"), &[self.elasticity])?;
         finite(&format!("{at}.velocity"), &self.velocity.to_array())?;
+        self.check_held(at)
+    }
+
+    /// Checks what leads it, which of its points are fixed, and that nothing else holds these.
+    fn check_held(&self, at: &str) -> Checked {
+        let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
         if let Some(message) = self.motion.as_ref().and_then(Motion::fault) {
             return refuse("motion", message);
         }

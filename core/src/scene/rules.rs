@@ -4,12 +4,13 @@ use crate::collide::{MarkCode, Meetings, Obstacles, Paths};
 use crate::constrain::Constraint;
 use crate::custom::CustomList;
 use crate::emit::Emit;
-use crate::force::{Backdrop, Force, SpringList};
+use crate::force::{Backdrop, Force, SpringList, Telling};
 use crate::index::IndexChoice;
 use crate::integrate::{Integrator, Symplectic};
 use crate::material::MaterialList;
 use crate::math::max;
 use crate::memory::{Likeness, Own, Plan, Size};
+use crate::observe::{Attention, Observer};
 use crate::particles::Particle;
 use crate::reap::Reaper;
 use crate::shape::Collider;
@@ -121,7 +122,7 @@ impl Scene<'_> {
         Plan {
             custom: self.custom.count(),
             ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
-            start: self.needs_start(),
+            start: self.needs_start() || needs.tell.is_some(),
             constrained,
             constraints: self.constraints.demand(),
             trees: needs.tree_columns(),
@@ -132,6 +133,12 @@ impl Scene<'_> {
             crowd: self.asks_around(),
             meetings: self.meetings.columns() + if self.meetings.is_through() { 0 } else { self.index.columns() },
         }
+    }
+
+    /// What lets forces tell of those who come to touch, if somebody watches.
+    pub(crate) fn telling(&self, observer: &dyn Observer) -> Option<Telling> {
+        // Nobody asks the forces where it is known that nobody watches.
+        if observer.attention() > Attention::Nothing { self.forces.needs().tell } else { None }
     }
 
     /// Tells whether births or deaths depend on who is near.

@@ -36,7 +36,7 @@ impl Tile<'_> {
         let Self { old, layout, ref attributes, .. } = *self;
         let len = self.position.len();
         let Shares { mut start, marks, bound, step: lasting, mut scratch, lists } = layout.shares(self.work);
-        if scene.needs_start() {
+        if scene.needs_start() || scene.telling(observer).is_some() {
             keep([&*self.position, &*self.velocity], &mut start);
         }
         if old < len {

@@ -35,6 +35,7 @@ impl<'w> Workspace<'w> {
             let places = &mut places[..old];
             places.copy_from_slice(&self.memory.position[..old]);
             index.with(places, reach, &mut |near| {
+                report.effort.all_pairs += u64::from(near.is_none() && old > 0);
                 let mut memory = self.memory.slices();
                 let workspace = &mut Workspace { memory: &mut memory, capacity: self.capacity, status: self.status };
                 let (report, observer) = (&mut *report, &mut *observer);

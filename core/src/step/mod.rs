@@ -7,10 +7,11 @@ mod population;
 mod reap;
 mod snap;
 mod substeps;
+mod tell;
 mod tile;
 mod write;
 
-use crate::collide::Passage;
+use crate::collide::Swept;
 use crate::constrain::Substep;
 use crate::index::Listed;
 use crate::memory::{Layout, TILED, Workspace};
@@ -36,9 +37,10 @@ impl Workspace<'_> {
         let span = [self.status.time, dt];
         self.age(scene, layout, span);
         self.tell(Phase::Create, scene, observer);
-        // In tiles those of one go through all sub-steps before those of the next, and who looks on would be told in that order.
+        // In tiles those of one go through all sub-steps before those of the next, and who looks on would be told in that order. Forces tell of all at once.
         let told_alike = scene.pieces() == 1 && observer.attention() < Attention::Phases;
-        if TILED && scene.is_local() && (told_alike || observer.attention() == Attention::Nothing) {
+        let is_unheard = observer.attention() == Attention::Nothing;
+        if TILED && scene.is_local() && (is_unheard || told_alike && scene.telling(observer).is_none()) {
             self.tile_by_tile(scene, layout, span, old, report, observer);
         } else {
             self.phase_by_phase(scene, layout, span, old, report, observer);
@@ -82,6 +84,9 @@ impl Workspace<'_> {
             if scene.is_swept() {
                 self.sweep(scene, layout, substep, old, report, observer);
             }
+            if let Some(code) = scene.telling(observer) {
+                self.let_forces_tell(scene, layout, substep, code, observer);
+            }
             self.tell(Phase::Collide, scene, observer);
         }
         // The steps that were made of this one: sub-steps, and those that a method chose.
@@ -104,17 +109,9 @@ impl Workspace<'_> {
     ) {
         let ([now, end], met) = (substep.during, report.hits + report.contacts);
         let tile = &mut self.tile(scene, layout, [now, end - now], old);
-        scene.meetings.follow(Passage { tile, paths: scene.paths, index: scene.index, report: &mut *report, observer });
+        scene.meetings.follow(Swept { tile, paths: scene.paths, index: scene.index, report: &mut *report, observer });
         if report.hits + report.contacts > met {
             self.status.hint = Time::ZERO;
-        }
-    }
-
-    /// Says how far the step has come, to whoever listens.
-    #[inline(never)]
-    fn tell(&self, phase: Phase, scene: &Scene<'_>, observer: &mut dyn Observer) {
-        if observer.attention() > Attention::Nothing {
-            observer.after(phase, &self.state(scene));
         }
     }
 

@@ -22,7 +22,7 @@ impl Workspace<'_> {
         observer: &mut dyn Observer,
     ) {
         if let Some(code) = scene.reapers.code().filter(|_| !scene.reapers.is_empty()) {
-            self.judge_all(scene, layout, code);
+            self.judge_all(scene, layout, code, &mut report.effort.all_pairs);
         }
         let before = report.died.lifetime;
         // Hosts fill in no event that nobody reads; on chips, asking takes more code than telling.
@@ -59,7 +59,7 @@ impl Workspace<'_> {
 
     /// Lets the scene's reapers choose.
     #[inline(never)]
-    fn judge_all(&mut self, scene: &Scene<'_>, layout: &Layout, code: ReaperCode) {
+    fn judge_all(&mut self, scene: &Scene<'_>, layout: &Layout, code: ReaperCode, all_pairs: &mut u64) {
         let (time, len, mut is_indexed) = (self.status.time, self.len(), self.status.is_indexed);
         let tile = self.tile(scene, layout, [time, Time::ZERO], len);
         let state = tile.attributes.lives.moved(time, tile.position, tile.velocity);
@@ -69,7 +69,8 @@ impl Workspace<'_> {
         if ARE_KEPT && scene.asks_around() {
             index.begin(scene.reach(), &mut is_indexed);
         }
-        let judged = Judged { state, pending_deaths: tile.pending_death, index: index.again(), places: &mut *places };
+        let (pending_deaths, index_of_all) = (tile.pending_death, index.again());
+        let judged = Judged { state, pending_deaths, index: index_of_all, all_pairs, places: &mut *places };
         (code.0)(scene.reapers, judged);
         if ARE_KEPT && is_indexed {
             index.name(bytemuck::cast_slice_mut(places), state.slot);

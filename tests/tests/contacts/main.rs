@@ -14,3 +14,4 @@ mod poison;
 mod position;
 mod resting;
 mod stacks;
+mod told;

@@ -39,6 +39,38 @@ impl TileSweep<'_, '_> {
         self.follow_from(row, None, walls, known);
     }
 
+    /// The means to follow the particle in a row, as large as this, past walls and to sinks.
+    #[inline(always)]
+    fn sweep<'s>(
+        &'s mut self,
+        row: usize,
+        radius: f32,
+        walls: &'s dyn Collider,
+        sinks: Option<&'s dyn Collider>,
+    ) -> Sweep<'s> {
+        let Self { tile, report, observer, .. } = self;
+        let observer: Option<&mut dyn Observer> = match observer {
+            Some(observer) => Some(&mut **observer),
+            None => None,
+        };
+        let Tile { ref obstacles, dt, attributes: ref m, .. } = **tile;
+        let lives = &m.lives;
+        Sweep {
+            obstacles,
+            walls,
+            sinks,
+            id: Id { slot: lives.slot[row], serial: lives.springs.serial[row] },
+            row: tile.first + row,
+            radius,
+            mass: lives.mass[row],
+            elasticity: m.elasticity[row],
+            material: lives.material[row].checked_sub(1),
+            dt: dt.seconds(),
+            report,
+            observer,
+        }
+    }
+
     /// The same from where it was and as fast, if that is told here.
     #[inline(never)]
     pub(super) fn follow_from(
@@ -55,20 +87,14 @@ impl TileSweep<'_, '_> {
             Some(start) => self.tile.path_from(row, start),
             None => self.path(row),
         };
-        let Self { tile, past, report, observer, .. } = self;
-        let observer: Option<&mut dyn Observer> = match observer {
-            Some(observer) => Some(&mut **observer),
-            None => None,
-        };
-        let Tile { ref obstacles, old, now, dt, attributes: ref m, .. } = **tile;
-        let lives = &m.lives;
+        let Tile { ref obstacles, old, now, ref attributes, .. } = *self.tile;
+        let (radius, born) = (attributes.lives.radius[row], attributes.lives.born[row]);
         // Constraints know nothing of the newborn.
-        let mark = if row < old { past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
+        let mark = if row < old { self.past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
         // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
         // may not touch anything.
         let path = if mark & SHIFTED != 0 { path.straightened() } else { path };
-        let is_kept = mark & TOUCHING != 0;
-        let radius = if is_kept { 0.5 * lives.radius[row] } else { lives.radius[row] };
+        let radius = if mark & TOUCHING != 0 { 0.5 * radius } else { radius };
         if !path.is_finite() {
             return;
         }
@@ -78,24 +104,11 @@ impl TileSweep<'_, '_> {
         }
         let (walls, known): (&dyn Collider, _) =
             if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
-        let before = report.hits + report.caps.bounces;
-        let sweep = Sweep {
-            obstacles,
-            walls,
-            sinks,
-            id: Id { slot: lives.slot[row], serial: lives.springs.serial[row] },
-            row: tile.first + row,
-            radius,
-            mass: lives.mass[row],
-            elasticity: m.elasticity[row],
-            material: m.lives.material[row].checked_sub(1),
-            dt: dt.seconds(),
-            report,
-            observer,
-        };
+        let before = self.report.hits + self.report.caps.bounces;
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
         // Who is born where a sub-step ends is let go in that.
-        let is_newborn = row >= old && lives.born[row] > now;
+        let is_newborn = row >= old && born > now;
+        let sweep = self.sweep(row, radius, walls, sinks);
         // Whoever is near one face alone goes the short way, among however many things.
         let facing = match known {
             None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),
@@ -109,10 +122,11 @@ impl TileSweep<'_, '_> {
         // Whom constraints have moved keeps the velocity that they leave it, which is not that of the straight way, where it meets nothing.
         if mark & SHIFTED != 0
             && end.pending_death == PendingDeath::Lives
-            && report.hits + report.caps.bounces == before
+            && self.report.hits + self.report.caps.bounces == before
         {
             return;
         }
+        let tile = &mut *self.tile;
         (tile.position[row], tile.velocity[row], tile.pending_death[row]) =
             (end.position, end.velocity, end.pending_death);
         if SHORT_WAY {

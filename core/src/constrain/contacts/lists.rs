@@ -19,7 +19,7 @@ const MARGIN: f32 = 0.1;
 /// The words kept through the step: for each particle a velocity, a drift, two loads, pairs and faces, and how long the
 /// lists are.
 pub(super) const KEPT: Words =
-    Words { per_row: 4 * 3 + PAIR_WORDS + FACES * (size_of::<Face>() / 4), fixed: size_of::<Lists>() / 4 };
+    Words { per_row: 4 * 3 + PAIR_WORDS + FACES * (size_of::<Face>() / 4), fixed: size_of::<Listed>() / 4 };
 const PAIR_WORDS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>()) * 3;
 
 /// Two that may touch in the step, and what they do to each other then.
@@ -49,7 +49,7 @@ pub(super) struct Face {
 /// How long the lists are, and what else is to be known of the sub-step.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(super) struct Lists {
+pub(super) struct Listed {
     pub(super) pairs: u32,
     pub(super) faces: u32,
     /// The sub-step before which they have to be made anew.
@@ -76,7 +76,7 @@ pub(super) struct Kept<'a> {
     pub(super) owed: &'a mut [Vec3],
     pub(super) pairs: &'a mut [Pair],
     pub(super) faces: &'a mut [Face],
-    pub(super) lists: &'a mut Lists,
+    pub(super) lists: &'a mut Listed,
 }
 
 impl<'a> Kept<'a> {
@@ -97,7 +97,7 @@ impl<'a> Kept<'a> {
 pub(super) fn gather(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>) {
     let Substep { number, count, .. } = bodies.substep;
     if number == 0 {
-        *kept.lists = Lists::default();
+        *kept.lists = Listed::default();
     }
     if number < kept.lists.until {
         if kept.lists.moving != 0 {
@@ -106,7 +106,7 @@ pub(super) fn gather(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>) {
         }
         return;
     }
-    *kept.lists = Lists { until: count, ..Lists::default() };
+    *kept.lists = Listed { until: count, ..Listed::default() };
     let Some((half, reach)) = reach(bodies, kept.lists) else { return };
     gather_pairs(bodies, kept, half, reach);
     gather_faces(bodies, kept, 2.0 * half);
@@ -148,7 +148,7 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
 }
 
 /// Half the time for which a list is to do, and how far two may then be from each other that touch in it; none: no two can.
-fn reach(bodies: &Bodies<'_>, lists: &mut Lists) -> Option<(f32, f32)> {
+fn reach(bodies: &Bodies<'_>, lists: &mut Listed) -> Option<(f32, f32)> {
     let len = bodies.len();
     let finite = bodies.velocity.iter().copied().filter(|v| v.is_finite());
     let mean = finite.sum::<Vec3>() / max(len as f32, 1.0);

@@ -6,7 +6,7 @@ mod touch;
 
 use super::{Bodies, Constraint, Demand, Share};
 use lists::{KEPT, Kept};
-pub(super) use touch::{TangentImpulse, Touch, bounce, closing};
+pub(super) use touch::{TangentImpulse, Touch, bounce};
 
 /// Contacts held by position, for heaps of balls: in each sub-step the integrator moves everything, then whatever overlaps is
 /// moved apart, with friction and elasticity, and velocities follow. Heaps ask for some 12 sub-steps of 1/60 s

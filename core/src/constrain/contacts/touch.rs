@@ -135,14 +135,6 @@ pub(in crate::constrain) fn bounce(substep: &Substep, elasticity: f32, [begun, a
     if 2.0 * bounce < RESTING * substep.step.seconds() * pressing { 0.0 } else { bounce }
 }
 
-/// How fast two came together that parted at the first speed before forces pressed them, and at the second one then \[m/s\]; none, if that is no more
-/// than forces give what rests in a step of so many sub-steps.
-pub(in crate::constrain) fn closing([begun, ended]: [f32; 2], substeps: u32) -> Option<f32> {
-    let rests = substeps as f32 * max(begun - ended, 0.0);
-    let closing = max(-begun, -ended);
-    (closing > rests && closing < f32::INFINITY).then_some(closing)
-}
-
 /// How far friction moves two along their surface that has `taken` so much of their slip in a sub-step of `h`: as a steady
 /// force does, and back over what the integrator has drifted, so that what was at rest and stays so has not moved, whatever
 /// the method.

@@ -1,11 +1,10 @@
 //! Telling whoever watches of what comes together.
 
 use super::super::Bodies;
-use super::super::contacts::closing;
 use super::contact::Contact;
 use super::lists::Kept;
 use crate::math::{dot, max, min};
-use crate::observe::Impact;
+use crate::observe::{Impact, closing};
 use crate::particles::Id;
 use glam::Vec3;
 

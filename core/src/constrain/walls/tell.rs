@@ -2,8 +2,7 @@
 
 use super::Wall;
 use crate::constrain::Bodies;
-use crate::constrain::contacts::closing;
-use crate::observe::Impact;
+use crate::observe::{Impact, closing};
 use glam::Vec3;
 
 /// Tells of a particle that its wall has pressed, if both came together faster than what rests does in a step.

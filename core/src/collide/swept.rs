@@ -7,7 +7,7 @@ use crate::observe::Observer;
 use crate::report::Report;
 
 /// A sub-step whose particles have been moved and are now to be held against colliders, sinks and each other.
-pub(crate) struct Passage<'p, 't> {
+pub(crate) struct Swept<'p, 't> {
     /// All rows.
     pub(crate) tile: &'p mut Tile<'t>,
     /// How those go that meet no others.
@@ -18,7 +18,7 @@ pub(crate) struct Passage<'p, 't> {
     pub(crate) observer: &'p mut dyn Observer,
 }
 
-impl Passage<'_, '_> {
+impl Swept<'_, '_> {
     /// Sends all past each other.
     #[inline(never)]
     pub(super) fn each_by_itself(self) {
