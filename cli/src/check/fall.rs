@@ -11,7 +11,7 @@
 //! 1 by up to 0.2, as single edges hang on where they hit. Beyond three it was up to 0.7 more.
 
 use crate::stall::gravity;
-use pointmass::scene::{Material, Model};
+use pointmass::scene::Model;
 use pointmass::shape::{Aabb, Collider, Segment};
 use pointmass::{ConstraintKind, Vec3};
 use serde::Serialize;
@@ -34,8 +34,22 @@ pub(crate) struct Fall {
     pub(crate) gives: f64,
     /// The length of its shortest edge \[m\].
     pub(crate) edge: f64,
-    /// True if there is friction.
+    /// True if there is friction between it and scenery.
     pub(crate) rough: bool,
+}
+
+/// Tells whether a sheet does not slide freely on all of the scenery.
+fn is_rough(model: &Model, sheet: &ConstraintKind) -> bool {
+    let resting = |material: Option<u16>| {
+        let contact = model.materials.get(usize::from(material?))?.contact;
+        contact.friction.map(|friction| friction.static_)
+    };
+    let own = sheet.ends().next().and_then(|&end| resting(model.particles[end as usize].material));
+    // Of two that touch the geometric mean counts, or what one of them says alone.
+    model.scenery.iter().any(|solid| match (own, resting(solid.material)) {
+        (Some(own), Some(other)) => own * other > 0.0,
+        (own, other) => own.or(other).is_some_and(|share| share > 0.0),
+    })
 }
 
 impl Fall {
@@ -51,8 +65,7 @@ impl Fall {
         // Hung in 1 m/s² from one end it is stretched by density × extent / stretch.
         let Aabb { min, max } = Aabb::around(sheet.ends().map(|&end| place(end)));
         let wave = (f64::from((max - min).max_element()) / sheet.hung(&model.particles, 1.0)?).sqrt();
-        let rough = |of: &Material| of.contact.friction.is_some_and(|friction| friction.static_ > 0.0);
-        let rough = model.materials.iter().any(rough);
+        let rough = is_rough(model, sheet);
         let (gives, edge) = (STRUCK * speed / wave, f64::from(edge));
         (gives > 0.0 && gives.is_finite() && edge > 0.0).then_some(Self { speed, gives, edge, rough })
     }
