@@ -87,7 +87,7 @@ impl Whole {
         let mut faster = Motion { along: Vec3::ZERO, turning: Vec3::ZERO };
         let rate = 1.0 / bodies.substep.seconds();
         for wall in walls.iter_mut() {
-            wall.held = wall.held * rate;
+            wall.held *= rate;
             match wall.is_near() && (wall.held != Vec3::ZERO || wall.touches(bodies)) {
                 true => wall.touch.begin(0.0),
                 false => wall.touch.end(),
