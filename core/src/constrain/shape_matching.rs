@@ -366,7 +366,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let (kept, particles) = (&mut *share.kept.fixed, self.particles.as_ref());
         let walls = walls::of(share.step, particles.len());
-        let Some(mut body) = self.body(bodies, kept) else { return };
+        let Some(mut body) = self.body(bodies, kept).filter(|_| bodies.substep.seconds() > 0.0) else { return };
         let brake = self.damping * bodies.substep.seconds() / body.mass;
         let taken = if self.compliance > 0.0 { brake / (1.0 + brake) } else { 1.0 };
         let spread = self.share_speed(bodies, kept, &mut body, taken);
