@@ -624,6 +624,144 @@ fn clusters_thrown_into_a_corner_gain_nothing_and_stay_in_the_room() {
     }
 }
 
+/// Nothing drives clusters in a box of smooth or rough walls: no blow gives them energy, however uneven they are, and however elastic.
+#[test]
+fn no_blow_gives_a_cluster_energy() {
+    let walls = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z]
+        .map(|normal| Plane { point: normal * -0.5, normal });
+    let mut random = Random::new(37);
+    for number in 0..often(36) {
+        let (elasticity, share) = ([1.0f32, 0.8][number % 2], [0.0f32, 0.3, 0.8][number / 2 % 3]);
+        let part = Particle { elasticity, material: Some(0), ..Particle::REST };
+        let (velocity, omega) = (random.vector(3.0), random.vector(9.0));
+        let along = random.direction() * 0.5;
+        let place = |i: u32| match number / 6 % 3 {
+            // A rod, a plate, and a heap of points.
+            0 => along * (i as f32 / 9.0 - 0.5),
+            1 => Vec3::new((i % 3) as f32 - 1.0, (i / 3) as f32 - 1.5, 0.0) * 0.15,
+            _ => along * (i as f32 / 20.0) + Vec3::new((i * 7 % 5) as f32, (i * 3 % 4) as f32, (i % 3) as f32) * 0.06,
+        };
+        let start: Vec<Particle> = (0..10)
+            .map(|i| {
+                let r = place(i);
+                Particle { position: r - place(4) * 0.5, velocity: velocity + omega.cross(r), ..part }
+            })
+            .collect();
+        let body = ShapeMatching::rigid((0..10).collect::<Vec<u32>>());
+        let friction = Some(Friction { static_: share, kinetic: share });
+        let materials = [ContactMaterial { elasticity: None, friction }];
+        let (method, substeps) = [(Method::Symplectic, 10), (Method::Verlet, 5), (Method::Rk4, 20)][number % 3];
+        let scene = Scene {
+            start: &start,
+            colliders: &walls,
+            materials: &materials,
+            constraints: &body,
+            substeps,
+            integrator: method.integrator(),
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, 10, 0);
+        let mut before = Measures::of(&system, &scene).energy.kinetic;
+        let name = format!("{number}: e {elasticity}, {share}, {method}, {substeps}");
+        for frame in 1..=600 {
+            system.step_to(&scene, Time::frame(frame, 60));
+            let now = Measures::of(&system, &scene).energy.kinetic;
+            assert!(now < 1.002 * before, "{name}, frame {frame}: {now} J of {before}");
+            before = now;
+        }
+        let out = system.particles().position.iter().map(|x| x.abs().max_element()).fold(0.0, f32::max);
+        assert!(out < 0.502, "{name}: {out}");
+    }
+}
+
+/// What turns about a fixed place is not turned far by a wall that hardly has a lever, nor by one that it has begun in.
+#[test]
+fn a_wall_without_a_lever_moves_no_pivot() {
+    let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    for (aside, deep) in [(0.0f32, 0.005f32), (1e-4, 0.005), (1e-3, 0.005), (1e-4, 1e-4), (0.2, 0.002)] {
+        let bob = Particle { position: Vec3::new(aside, 0.01 - deep, 0.0), radius: 0.01, ..Particle::REST };
+        let hook = Particle { position: Vec3::Y, fixed: true, ..Particle::REST };
+        let start = [hook, bob];
+        let body = ShapeMatching::rigid([0, 1]);
+        let scene = Scene {
+            start: &start,
+            forces: &DOWN,
+            colliders: &ground,
+            constraints: &body,
+            substeps: 10,
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, 2, 0);
+        run(&mut system, &scene, 1.0 / 60.0, 1);
+        let way = system.particles().position[1].distance(start[1].position);
+        assert!(way < 0.05, "{aside} aside, {deep} deep: {way} m");
+    }
+}
+
+/// Two bodies that share a particle are two: their balls meet. Those of each do not, though they overlap.
+#[test]
+fn clusters_that_share_a_particle_are_two() {
+    let at = |angle: f32, r: f32, turns: f32| {
+        let place = Vec3::new(angle.cos(), angle.sin(), 0.0) * r;
+        Particle { position: place, velocity: Vec3::Z.cross(place) * turns, radius: 0.06, ..Particle::REST }
+    };
+    let start = [at(0.0, 0.0, 0.0), at(0.0, 0.9, 1.0), at(0.0, 1.0, 1.0), at(0.5, 0.9, -1.0), at(0.5, 1.0, -1.0)];
+    let bodies = [ShapeMatching::rigid([0, 1, 2]), ShapeMatching::rigid([0, 3, 4])];
+    let constraints = (bodies, Contacts::HARD);
+    let scene = Scene { start: &start, constraints: &constraints, substeps: 20, ..Scene::EMPTY };
+    let mut system = started(&scene, 5, 0);
+    for frame in 1..=60 {
+        system.step_to(&scene, Time::frame(frame, 60));
+        let x = system.particles().position;
+        for (a, b) in [(1, 3), (2, 4)] {
+            assert!(x[a].distance(x[b]) > 0.1, "frame {frame}: {a} and {b}");
+        }
+        for (a, b) in [(1, 2), (3, 4)] {
+            assert!((x[a].distance(x[b]) - 0.1).abs() < 0.01, "frame {frame}: {a} and {b}");
+        }
+    }
+}
+
+/// What hardly gives way bounces as what does not.
+#[test]
+fn a_cluster_that_is_almost_rigid_bounces_as_a_rigid_one() {
+    let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let part = Particle { elasticity: 0.9, ..Particle::REST };
+    let start = corners(Vec3::Y * 0.12, Vec3::splat(0.1), Vec3::ZERO, Vec3::NEG_Y * 2.0, part);
+    let rebound = |compliance: f32| {
+        let body = ShapeMatching { compliance, ..ShapeMatching::rigid(CUBE) };
+        let scene = Scene { start: &start, colliders: &ground, constraints: &body, substeps: 20, ..Scene::EMPTY };
+        let mut system = started(&scene, 8, 0);
+        run(&mut system, &scene, 1.0 / 60.0, 2);
+        system.particles().velocity.iter().map(|v| v.y).sum::<f32>() / 8.0
+    };
+    let [rigid, soft] = [0.0, 1e-9].map(rebound);
+    assert!((rigid - 1.8).abs() < 0.02 && (soft - 1.8).abs() < 0.04, "{rigid} {soft} m/s");
+}
+
+/// A box that begins in a floor and in a wall is brought out of both without being thrown.
+#[test]
+fn who_begins_in_a_corner_is_not_thrown_out() {
+    let faces = [Vec3::Y, Vec3::X].map(|normal| Plane { point: Vec3::ZERO, normal });
+    let start = corners(
+        Vec3::new(0.1 - 0.01, 0.1 - 0.015, 0.0),
+        Vec3::splat(0.1),
+        Vec3::ZERO,
+        Vec3::ZERO,
+        Particle { radius: 0.02, ..Particle::REST },
+    );
+    let start: Vec<Particle> =
+        start.iter().map(|p| Particle { position: p.position + Vec3::new(0.02, 0.02, 0.0), ..*p }).collect();
+    let body = ShapeMatching::rigid(CUBE);
+    let scene = Scene { start: &start, colliders: &faces, constraints: &body, substeps: 20, ..Scene::EMPTY };
+    let mut system = started(&scene, 8, 0);
+    run(&mut system, &scene, 1.0 / 60.0, 30);
+    for (x, v) in system.particles().position.iter().zip(system.particles().velocity) {
+        assert!(v.length() < 0.02, "{x}: {v}");
+        assert!(x.x > 0.019 && x.y > 0.019, "{x}");
+    }
+}
+
 /// x of A x = b, by Cramer's rule.
 fn solved(a: [[f64; 3]; 3], b: [f64; 3]) -> [f64; 3] {
     let determinant = |[x, y, z]: [[f64; 3]; 3]| (0..3).map(|k| x[k] * cross(y, z)[k]).sum::<f64>();

@@ -216,11 +216,17 @@ impl Bodies<'_> {
         self.marks[row] |= SHIFTED | TOUCHING;
     }
 
-    /// Says that the particle in a row is held in its place to all others that are bound by the same name, through the step: contacts between
-    /// them are none. Names above zero by which nothing else binds are those of its particles, plus one; who is bound twice is so by the last name.
-    pub fn bind(&mut self, row: usize, name: u32) {
-        if let Some(bound) = self.bound.get_mut(row) {
-            *bound = name;
+    /// Says that particles, by their places in the scene's start, are held in their places to each other through the step: contacts between them are
+    /// none. Who is bound several times counts as bound by the last.
+    pub fn bind(&mut self, particles: &[u32]) {
+        let rows = |bodies: &Self, number: &u32| bodies.row_of_start(*number).filter(|&row| row < bodies.bound.len());
+        // By a name that nobody else can have taken: the row of one whom nobody has bound.
+        let free = particles.iter().filter_map(|number| rows(self, number)).find(|&row| self.bound[row] == 0);
+        let Some(free) = free else { return };
+        for number in particles {
+            if let Some(row) = rows(self, number) {
+                self.bound[row] = free as u32 + 1;
+            }
         }
     }
 

@@ -110,7 +110,7 @@ pub trait Constraint: Sync {
     }
 
     /// Says at a step's beginning, before any constraint looks on, which particles it holds in their places to each other ([`Bodies::bind`]): others
-    /// leave those alone. It is called if it [demands](Demand::binds) so.
+    /// leave those alone. It is called if anybody [demands](Demand::binds) so.
     fn bind(&self, bodies: &mut Bodies<'_>) {
         let _ = bodies;
     }

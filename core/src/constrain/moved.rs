@@ -5,7 +5,7 @@ use crate::custom::CustomColumnsMut;
 use crate::force::Attributes;
 use crate::index::{IndexChoice, ListMemory};
 use crate::integrate::Integrator;
-use crate::memory::{Layout, Scratch};
+use crate::memory::{Layout, Scratch, take};
 use crate::observe::{Observer, Phase};
 use crate::reap::PendingDeath;
 use crate::report::Report;
@@ -33,9 +33,8 @@ pub(crate) struct Moved<'a> {
     /// Places and velocities at the sub-step's beginning; empty where nobody asks.
     pub(crate) start: [&'a [Vec3]; 2],
     pub(crate) pending_death: &'a [PendingDeath],
-    /// A mark for each of what constraints do to it, a name of what it is bound in, and the words that they keep through the step.
+    /// A mark for each of what constraints do to it, and the words that they keep through the step.
     pub(crate) marks: &'a mut [u32],
-    pub(crate) bound: &'a mut [u32],
     pub(crate) lasting: &'a mut [u32],
     pub(crate) lists: ListMemory<'a>,
     /// The words kept from step to step, for writing where there are constraints.
@@ -61,6 +60,9 @@ impl Moved<'_> {
         let (len, capacity) = (self.position.len(), self.layout.capacity());
         let [memory, scratch] = self.scratch.constraining();
         let (custom, kept) = self.layout.kept(self.kept);
+        let mut step = &mut *self.lasting;
+        let bound = take(&mut step, self.layout.names());
+        let named = len.min(bound.len());
         let bodies = Bodies {
             position: self.position,
             velocity: self.velocity,
@@ -82,9 +84,9 @@ impl Moved<'_> {
             pending_death: self.pending_death,
             start: lives.springs.start,
             marks: self.marks,
-            bound: self.bound,
+            bound: &mut bound[..named],
             observer: self.observer,
         };
-        (bodies, Share { kept, step: self.lasting, scratch, capacity })
+        (bodies, Share { kept, step, scratch, capacity })
     }
 }

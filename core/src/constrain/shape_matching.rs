@@ -35,7 +35,7 @@ use glam::{Mat3, Vec3};
 ///
 /// What else holds single particles back (contacts with balls, links) is listed behind it: velocities are shared among all at the sub-step's end, and
 /// places in the next sub-step, so that a blow on one of n takes about n sub-steps to stop all of them. Until then it is a little out of shape.
-/// [`Contacts`](super::Contacts) leave balls of one cluster alone, so those may overlap.
+/// [`Contacts`](super::Contacts) leave balls of one cluster alone, so those may overlap; of a particle in several clusters that is so for the last.
 ///
 /// Whoever is fixed stays: about one that is fixed the others swing, about two they turn, and three hold all of them. Whoever has died is
 /// left out. Lines and planes of particles are bodies as good as any; one particle alone, or all in one place, are not bound.
@@ -223,6 +223,11 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         kept[OWED..HEAD].copy_from_slice(&owed.to_array().map(f32::to_bits));
     }
 
+    /// The share of the way to their goals that particles go in a sub-step of `h` \[s\].
+    fn give(&self, body: &Body, h: f32) -> f32 {
+        1.0 / (1.0 + self.compliance * body.mass / (h * h))
+    }
+
     /// Takes so large a share of how fast particles move against the motion of the whole that has the same momenta, and keeps how that is held; tells
     /// the sum of r rᵀ over the mass.
     fn share_speed(&self, bodies: &mut Bodies<'_>, kept: &mut [u32], body: &mut Body, taken: f32) -> Mat3 {
@@ -289,13 +294,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     }
 
     fn bind(&self, bodies: &mut Bodies<'_>) {
-        let particles = self.particles.as_ref();
-        let Some(&first) = particles.first() else { return };
-        for &number in particles {
-            if let Some(row) = bodies.row_of_start(number) {
-                bodies.bind(row, first.wrapping_add(1));
-            }
-        }
+        bodies.bind(self.particles.as_ref());
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -322,7 +321,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         }
         let turn = self.turn(bodies, kept, &body, last);
         kept[1..OWED].copy_from_slice(&turn.0.map(f32::to_bits));
-        let (rotation, give) = (turn.matrix(), 1.0 / (1.0 + self.compliance * body.mass / (h * h)));
+        let (rotation, give) = (turn.matrix(), self.give(&body, h));
         self.each(bodies, kept, &mut |bodies, member| {
             let goal = body.center + rotation * (member.place - body.rest);
             let by = (goal - (bodies.position[member.row] - body.origin)) * give;
@@ -371,7 +370,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         let taken = if self.compliance > 0.0 { brake / (1.0 + brake) } else { 1.0 };
         let spread = self.share_speed(bodies, kept, &mut body, taken);
         if walls.iter().any(Wall::is_near) {
-            let whole = body.whole(spread, taken);
+            let whole = body.whole(spread, max(self.give(&body, bodies.substep.seconds()), taken));
             let faster = whole.answer(walls, bodies);
             self.each(bodies, kept, &mut |bodies, member| {
                 let by = whole.moves(bodies, member.row, &faster);

@@ -8,6 +8,7 @@ use glam::Vec3;
 #[allow(missing_debug_implementations)]
 pub struct Watched<'a> {
     /// The particles as the sub-step began, in the rows that they have now; the newborn at their births. Who is near whom is to be asked of those at its end.
+    /// Where balls meet by impulse, whoever met another is as his last way in it began.
     pub before: State<'a>,
     /// The particles at its end, when all have been held against colliders and each other.
     pub now: State<'a>,

@@ -75,6 +75,12 @@ impl Demand {
             binds: self.binds || other.binds,
         }
     }
+
+    /// The same, with a word through the step for each particle, before all others, if anybody binds particles: the name by which it is bound.
+    pub(crate) fn with_names(mut self) -> Self {
+        self.step.per_row = self.step.per_row.saturating_add(usize::from(self.binds));
+        self
+    }
 }
 
 /// The memory that a whole scene's step asks for.
@@ -144,16 +150,15 @@ impl Plan {
         Words { fixed: index_words(), ..Words::columns(self.index) }
     }
 
-    /// Marks, names of what particles are bound in, and words that constraints keep through the step, for so many particles.
-    fn through_step(&self, capacity: usize) -> [usize; 3] {
-        let column = |is_there| if is_there { capacity } else { 0 };
-        [column(self.constrained), column(self.constraints.binds), self.constraints.step.of(capacity)]
+    /// Marks, and words that constraints keep through the step, for so many particles.
+    fn marks_and_step(&self, capacity: usize) -> [usize; 2] {
+        [if self.constrained { capacity } else { 0 }, self.constraints.step.of(capacity)]
     }
 
-    /// All of them.
+    /// Both.
     fn lasting(&self, capacity: usize) -> usize {
-        let [marks, bound, step] = self.through_step(capacity);
-        marks.saturating_add(bound).saturating_add(step)
+        let [marks, step] = self.marks_and_step(capacity);
+        marks.saturating_add(step)
     }
 
     /// The words that its phases need in turn.
@@ -189,8 +194,6 @@ pub(crate) struct Shares<'m> {
     pub(crate) start: [&'m mut [Vec3]; 2],
     /// A mark for each particle of what constraints have done to it.
     pub(crate) marks: &'m mut [u32],
-    /// A name for each particle of what holds it in its place to others; empty if nothing does.
-    pub(crate) bound: &'m mut [u32],
     /// The words that constraints keep through the step.
     pub(crate) step: &'m mut [u32],
     /// For whatever is at work.
@@ -272,6 +275,11 @@ impl Layout {
         self.plan.kept()
     }
 
+    /// The words through the step that are names by which particles are bound.
+    pub(crate) fn names(&self) -> usize {
+        if self.plan.constraints.binds { self.capacity } else { 0 }
+    }
+
     /// The number of particles that there is room for.
     pub(crate) const fn capacity(&self) -> usize {
         self.capacity
@@ -292,12 +300,11 @@ impl Layout {
         };
         let pair = if self.plan.start { self.capacity } else { 0 };
         let start = [take(&mut rest, pair), take(&mut rest, pair)];
-        let [marks, bound, step] = self.plan.through_step(self.capacity);
+        let [marks, step] = self.plan.marks_and_step(self.capacity);
         let mut lasting = bytemuck::cast_slice_mut(take(&mut rest, self.lasting));
         Shares {
             start,
             marks: take(&mut lasting, marks),
-            bound: take(&mut lasting, bound),
             step: take(&mut lasting, step),
             scratch: Scratch { vectors: rest, index, layout: self },
             lists: bytemuck::cast_slice_mut(lists),

@@ -35,7 +35,7 @@ impl Tile<'_> {
         }
         let Self { old, layout, ref attributes, .. } = *self;
         let len = self.position.len();
-        let Shares { mut start, marks, bound, step: lasting, mut scratch, lists } = layout.shares(self.work);
+        let Shares { mut start, marks, step: lasting, mut scratch, lists } = layout.shares(self.work);
         if scene.needs_start() || scene.telling(observer).is_some() {
             keep([&*self.position, &*self.velocity], &mut start);
         }
@@ -57,7 +57,6 @@ impl Tile<'_> {
             start: start.map(|column| &*first(column, old)),
             pending_death: &self.pending_death[..old],
             marks: first(marks, old),
-            bound: first(bound, old),
             lasting,
             lists: ListMemory::new(lists, listed, changes, substep.step.seconds(), scene.index.room()),
             kept,

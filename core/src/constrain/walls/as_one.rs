@@ -1,15 +1,21 @@
 //! Walls that press what moves as one: a push at one of its particles moves all of it.
 
-use super::Wall;
+use super::{NOBODY, Wall};
 use crate::constrain::Bodies;
 use crate::constrain::contacts::bounce;
 use crate::math::{aside, dot, length, max, min};
 use glam::{Mat3, Vec3};
 
 /// Times that all walls are gone over, at the most.
-const ROUNDS: u32 = 40;
+const ROUNDS: u32 = 64;
 /// The share of the first change below which the changes of a round are small enough.
-const SETTLED: f32 = 1e-4;
+const SETTLED: f32 = 1e-3;
+/// The square of the sine of the least angle between a push and the arm at which it turns what is fixed at a place: others are borne by that.
+const LEAST: f32 = 1e-3;
+/// The shares of elasticity that are tried, until walls give no energy.
+const BOUNCES: [f32; 4] = [1.0, 0.5, 0.25, 0.0];
+/// The share of all the work of walls that may be rounding.
+const ROUNDING: f32 = 1e-4;
 
 /// What moves as one, and how it answers a push at a particle.
 pub(in crate::constrain) struct Whole {
@@ -30,6 +36,10 @@ pub(in crate::constrain) struct Motion {
     turning: Vec3,
 }
 
+impl Motion {
+    const NONE: Self = Self { along: Vec3::ZERO, turning: Vec3::ZERO };
+}
+
 impl Whole {
     /// Where a particle is, from the centre.
     fn arm(&self, bodies: &Bodies<'_>, row: usize) -> Vec3 {
@@ -41,9 +51,13 @@ impl Whole {
         motion.along + motion.turning.cross(self.arm(bodies, row))
     }
 
-    /// How far a push of one along a direction moves the particle that it acts on, along that.
+    /// How far a push of one along a direction moves the particle that it acts on, along that; zero: it does not.
     fn gives_way(&self, bodies: &Bodies<'_>, row: usize, direction: Vec3) -> f32 {
-        let lever = self.arm(bodies, row).cross(direction);
+        let arm = self.arm(bodies, row);
+        let lever = arm.cross(direction);
+        if !(self.inverse_mass > 0.0) && dot(lever, lever) < LEAST * dot(arm, arm) {
+            return (1.0 - self.share) * bodies.inverse_mass[row];
+        }
         let all = self.inverse_mass + dot(lever, self.inverse_inertia * lever);
         self.share * all + (1.0 - self.share) * bodies.inverse_mass[row]
     }
@@ -55,17 +69,18 @@ impl Whole {
         push * ((1.0 - self.share) * bodies.inverse_mass[row])
     }
 
-    /// Goes over walls until what they change is small against what they have changed to begin with.
-    fn go_over(walls: &mut [Wall], counts: fn(&Wall) -> bool, mut change: impl FnMut(&mut Wall) -> f32) {
+    /// Goes over walls until what they change is small against what they have changed to begin with; tells whether it has become so.
+    fn go_over(walls: &mut [Wall], counts: fn(&Wall) -> bool, mut change: impl FnMut(&mut Wall) -> f32) -> bool {
         let mut enough = 0.0;
         for round in 0..ROUNDS {
             let changes = walls.iter_mut().filter(|wall| counts(wall)).map(&mut change);
             let most = changes.fold(0.0, max);
             enough = if round == 0 { most * SETTLED } else { enough };
             if !(most > enough) {
-                break;
+                return true;
             }
         }
+        false
     }
 
     /// Pushes it out of walls by impulses at its particles, with friction, which holds particles where they touch if it can. Particles are moved by
@@ -73,31 +88,70 @@ impl Whole {
     ///
     /// Walls are gone over one after the other, each with what it has given so far, so that it never pulls (projected Gauss-Seidel).
     pub(in crate::constrain) fn press(&self, walls: &mut [Wall], bodies: &mut Bodies<'_>) -> Motion {
-        let mut moved = Motion { along: Vec3::ZERO, turning: Vec3::ZERO };
+        let mut moved = Motion::NONE;
         for wall in &mut *walls {
             (wall.held, wall.brake) = (Vec3::ZERO, 0.0);
         }
-        Self::go_over(walls, Wall::is_near, |wall| wall.push(self, bodies, &mut moved));
+        let is_settled = Self::go_over(walls, Wall::is_near, |wall| wall.push(self, bodies, &mut moved));
+        bodies.report.effort.capped += u64::from(!is_settled);
+        for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY) {
+            // It is that much nearer to what has been searched.
+            wall.clear = max(wall.clear - length(self.moves(bodies, wall.row as usize, &moved)), 0.0);
+        }
         moved
     }
 
     /// Lets its particles leave walls as fast as elasticity wants, and takes what friction can of their slip by all that has pressed. Particles
     /// are given what they answer by themselves; tells by how much the whole is faster.
+    ///
+    /// Newton's restitution at several places at once, or with friction, can give energy (Kane and Levinson, "Dynamics: Theory and Applications",
+    /// 1985): where it would, all of them are as elastic by half, by a quarter, or not at all.
     pub(in crate::constrain) fn answer(&self, walls: &mut [Wall], bodies: &mut Bodies<'_>) -> Motion {
-        let mut faster = Motion { along: Vec3::ZERO, turning: Vec3::ZERO };
+        let mut faster = Motion::NONE;
         let rate = 1.0 / bodies.substep.seconds();
-        for wall in walls.iter_mut() {
-            wall.held *= rate;
-            match wall.is_near() && (wall.held != Vec3::ZERO || wall.touches(bodies)) {
+        for wall in &mut *walls {
+            (wall.held, wall.brake) = (wall.held * rate, wall.brake * rate);
+            match wall.is_near() && (wall.held != Vec3::ZERO || wall.brake > 0.0 || wall.touches(bodies)) {
                 true => wall.touch.begin(0.0),
                 false => wall.touch.end(),
             }
         }
-        Self::go_over(walls, Wall::is_touched, |wall| wall.bounce(self, bodies, &mut faster));
+        let mut is_settled = true;
+        for share in BOUNCES {
+            is_settled = Self::go_over(walls, Wall::is_touched, |wall| wall.bounce(self, bodies, &mut faster, share));
+            if !self.gains(walls, bodies, &faster) {
+                break;
+            }
+        }
+        bodies.report.effort.capped += u64::from(!is_settled);
         for wall in walls.iter_mut().filter(|wall| wall.touch.is_on()) {
-            wall.touch.begin(wall.held.dot(wall.normal) * bodies.inverse_mass[wall.row as usize]);
+            let pressed = wall.held.dot(wall.normal) + wall.brake;
+            wall.touch.begin(pressed * bodies.inverse_mass[wall.row as usize]);
         }
         faster
+    }
+
+    /// Tells whether walls that stand still have given it energy: by their impulses, times the mean of the velocities before and now.
+    fn gains(&self, walls: &[Wall], bodies: &Bodies<'_>, faster: &Motion) -> bool {
+        let touched = || walls.iter().filter(|wall| wall.touch.is_on());
+        if !touched().all(Wall::stands) {
+            return false;
+        }
+        let given = |wall: &Wall| wall.held + wall.beside * wall.brake;
+        let mut all = Motion::NONE;
+        for wall in touched() {
+            self.take(bodies, wall.row as usize, given(wall), &mut all);
+        }
+        let (mut work, mut size) = (0.0, 0.0);
+        for wall in touched() {
+            let (row, given) = (wall.row as usize, given(wall));
+            let now = bodies.velocity[row] + self.moves(bodies, row, faster);
+            let own = given * ((1.0 - self.share) * bodies.inverse_mass[row]);
+            let change = self.moves(bodies, row, &all) + own;
+            work += given.dot(now - change * 0.5);
+            size += length(given) * (length(now) + length(change));
+        }
+        work > ROUNDING * size
     }
 }
 
@@ -114,28 +168,29 @@ impl Wall {
         let mut far = self.give(whole, bodies, moved, missing, Self::shift);
         if self.beside != Vec3::ZERO {
             let missing = self.beyond - at(bodies, moved).dot(self.beside);
-            let weight = whole.gives_way(bodies, row, self.beside);
-            let by = max(missing / weight, -self.brake);
-            if by.is_finite() {
-                self.brake += by;
-                far = max(by.abs() * weight, far);
-                let alone = whole.take(bodies, row, self.beside * by, moved);
-                Self::shift(bodies, row, alone);
-            }
+            far = max(self.give_beside(whole, bodies, moved, missing, Self::shift), far);
         }
         let slip = aside(at(bodies, moved) - self.stuck, normal);
         max(self.rub(whole, bodies, moved, slip, Self::shift), far)
     }
 
-    /// Brings its particle to leave it as fast as elasticity wants, with what friction holds; tells by how much it is faster.
-    fn bounce(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, faster: &mut Motion) -> f32 {
-        let (row, normal) = (self.row as usize, self.normal);
-        let wanted = bounce(&bodies.substep, self.touch.elasticity, self.ends(bodies));
+    /// Brings its particle to leave it as fast as a share of its elasticity wants, with what friction holds; tells by how much it is faster.
+    fn bounce(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, faster: &mut Motion, share: f32) -> f32 {
+        let (row, normal, beside) = (self.row as usize, self.normal, self.beside);
+        let elasticity = share * self.touch.elasticity;
         let leaves = |bodies: &Bodies<'_>, faster: &Motion, surface: Vec3| {
             bodies.velocity[row] + whole.moves(bodies, row, faster) - surface
         };
+        let wanted = bounce(&bodies.substep, elasticity, self.ends(bodies));
         let missing = wanted - leaves(bodies, faster, self.velocity).dot(normal);
-        let far = self.give(whole, bodies, faster, missing, Self::hasten);
+        let mut far = self.give(whole, bodies, faster, missing, Self::hasten);
+        // How the other face moves is not known.
+        if self.brake > 0.0 && self.stands() {
+            let ends = [bodies.before[1][row], self.pushed].map(|v: Vec3| v.dot(beside));
+            let wanted = bounce(&bodies.substep, elasticity, ends);
+            let missing = wanted - leaves(bodies, faster, Vec3::ZERO).dot(beside);
+            far = max(self.give_beside(whole, bodies, faster, missing, Self::hasten), far);
+        }
         let slip = aside(leaves(bodies, faster, self.velocity), normal);
         max(self.rub(whole, bodies, faster, slip, Self::hasten), far)
     }
@@ -145,7 +200,31 @@ impl Wall {
         let (row, normal) = (self.row as usize, self.normal);
         let (given, weight) = (self.held.dot(normal), whole.gives_way(bodies, row, normal));
         let by = max(given + missing / weight, 0.0) - given;
+        if !(weight > 0.0 && by.is_finite()) {
+            return 0.0;
+        }
         self.change(whole, bodies, motion, normal * by, own);
+        (by * weight).abs()
+    }
+
+    /// The same along the normal of the other face.
+    fn give_beside(
+        &mut self,
+        whole: &Whole,
+        bodies: &mut Bodies<'_>,
+        motion: &mut Motion,
+        missing: f32,
+        own: Own,
+    ) -> f32 {
+        let (row, beside) = (self.row as usize, self.beside);
+        let weight = whole.gives_way(bodies, row, beside);
+        let by = max(missing / weight, -self.brake);
+        if !(weight > 0.0 && by.is_finite()) {
+            return 0.0;
+        }
+        self.brake += by;
+        let alone = whole.take(bodies, row, beside * by, motion);
+        own(bodies, row, alone);
         (by * weight).abs()
     }
 
@@ -158,21 +237,23 @@ impl Wall {
             return 0.0;
         }
         let direction = if speed > 0.0 { slip * (1.0 / speed) } else { Vec3::ZERO };
-        let weight = max(whole.gives_way(bodies, row, direction), f32::MIN_POSITIVE);
-        let wanted = held - direction * (speed / weight);
+        let weight = whole.gives_way(bodies, row, direction);
+        let wanted = if weight > 0.0 { held - direction * (speed / weight) } else { held };
         let far = length(wanted);
         let given = if far <= resting * pressed { wanted } else { wanted * min(sliding * pressed / far, 1.0) };
-        self.change(whole, bodies, motion, given - held, own);
-        length(given - held) * weight
+        let by = given - held;
+        if !by.is_finite() {
+            return 0.0;
+        }
+        self.change(whole, bodies, motion, by, own);
+        length(by) * weight
     }
 
     /// Changes what it gives its particle.
     fn change(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, motion: &mut Motion, by: Vec3, own: Own) {
-        if by.is_finite() {
-            self.held += by;
-            let alone = whole.take(bodies, self.row as usize, by, motion);
-            own(bodies, self.row as usize, alone);
-        }
+        self.held += by;
+        let alone = whole.take(bodies, self.row as usize, by, motion);
+        own(bodies, self.row as usize, alone);
     }
 
     fn shift(bodies: &mut Bodies<'_>, row: usize, by: Vec3) {

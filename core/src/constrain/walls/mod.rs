@@ -61,7 +61,8 @@ pub(super) struct Wall {
     pushed: Vec3,
     /// How far off all scenery is, at the least \[m\].
     clear: f32,
-    /// The part that it takes of the forces that are left \[kg m\], and what it brakes by for each metre that its particle slides \[kg\].
+    /// The part that it takes of the forces that are left \[kg m\], and what it brakes by for each metre that its particle slides \[kg\]. Where it presses
+    /// what moves as one: what it has given its particle, and along `beside` \[kg m\], in the end as impulses \[kg m/s\].
     held: Vec3,
     brake: f32,
     /// Where its particle is held if friction can: where it comes to touch \[m\].
