@@ -65,6 +65,30 @@ fn clusters_keep_their_angular_momentum_for_a_minute() {
     assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
 }
 
+/// Points on a line, which has no moment of inertia about itself, turn for a minute as fast as they began to.
+#[test]
+fn rods_keep_their_spin_for_a_minute() {
+    let mut random = Random::new(13);
+    for number in 0..often(24) {
+        let (count, size) = ([2, 3, 10][number % 3], [1.0f32, 0.01, 100.0][number / 3 % 3]);
+        let (along, omega) = ([Vec3::X, Vec3::Z, random.direction()][number % 3] * size, random.vector(9.0));
+        let (place, velocity) = (random.vector(2.0 * size), random.vector(0.1 * size));
+        let start: Vec<Particle> = (0..count)
+            .map(|i| {
+                let r = along * (i as f32 / (count - 1) as f32 - 0.5);
+                Particle { position: place + r, velocity: velocity + omega.cross(r), mass: 0.1, ..Particle::REST }
+            })
+            .collect();
+        let body = ShapeMatching::rigid((0..count).collect::<Vec<u32>>());
+        let (substeps, method) =
+            [(1, Method::Symplectic), (5, Method::Verlet), (20, Method::Rk4), (10, Method::Symplectic)][number % 4];
+        let integrator = method.integrator();
+        let scene = Scene { start: &start, constraints: &body, substeps, integrator, ..Scene::EMPTY };
+        let [_, _, changed] = flown(&scene, often(3600) as u64, &mut |_, _| ());
+        assert!(changed < 2e-3, "{number}: {count} along {along} in {substeps}: {changed:.1e}");
+    }
+}
+
 /// A box of 1 x 2 x 3 turns about its middle axis and flips for a minute as often as Euler's equations say, whether it is a cluster or a rigid body.
 #[test]
 fn what_turns_about_its_middle_axis_flips_in_its_time() {

@@ -2,8 +2,8 @@
 
 #[cfg(feature = "alloc")]
 use super::declared::{Declared, twice};
-use super::turn::{Turn, about, keeping, moment, nearest, outer, solve};
-use super::walls::{self, Wall, Whole};
+use super::turn::{Turn, about, keeping_by, moment, nearest, outer, solve_thin};
+use super::walls::{self, Motion, Wall, Whole};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{dot, max, sqrt};
 #[cfg(feature = "alloc")]
@@ -77,6 +77,8 @@ pub struct ShapeMatching<P> {
 const HEAD: usize = 8;
 /// The rotation's words of those, and what follows them.
 const OWED: usize = 5;
+/// The share of an energy that may be rounding.
+const ROUNDING: f32 = 1e-5;
 /// The share of an angular momentum beyond which what is lost of it is no rounding.
 const DEBT: f32 = 1e-5;
 
@@ -186,7 +188,7 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         });
         if wide > 1e-6 * far * far {
             *last = nearest(*last, to, None);
-            return Hold::Fast { omega: solve(spread, spin) };
+            return Hold::Fast { omega: solve_thin(spread, spin) };
         }
         let (r, v) = (body.place(bodies, row), bodies.velocity[row] - body.drift);
         let square = dot(r, r);
@@ -223,6 +225,17 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         kept[OWED..HEAD].copy_from_slice(&owed.to_array().map(f32::to_bits));
     }
 
+    /// Pushes it out of walls.
+    fn press(&self, bodies: &mut Bodies<'_>, kept: &[u32], walls: &mut [Wall], whole: &Whole) {
+        let moved = whole.press(walls, bodies);
+        self.each(bodies, kept, &mut |bodies, member| {
+            let by = whole.moves(bodies, member.row, &moved);
+            if !member.fixed && by.is_finite() {
+                bodies.shift(member.row, by);
+            }
+        });
+    }
+
     /// The share of the way to their goals that particles go in a sub-step of `h` \[s\].
     fn give(&self, body: &Body, h: f32) -> f32 {
         1.0 / (1.0 + self.compliance * body.mass / (h * h))
@@ -237,7 +250,7 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
             body.hold = self.hold(bodies, kept, body, &mut Turn::kept(kept));
         }
         let omega = match body.hold {
-            Hold::Free => solve(spread, spin),
+            Hold::Free => solve_thin(spread, spin),
             Hold::About { axis, omega } => omega + axis * about(axis, spread, spin - moment(spread, omega)),
             Hold::Fast { omega } => omega,
         };
@@ -276,14 +289,14 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
             Hold::About { axis, .. } => Some(axis),
             Hold::Fast { .. } => return last,
         };
-        keeping(last, from, torque, axis).unwrap_or_else(|| nearest(last, to, axis))
+        keeping_by(solve_thin, last, (from, torque), axis).unwrap_or_else(|| nearest(last, to, axis))
     }
 }
 
 impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     fn demand(&self) -> Demand {
         let places = self.particles.as_ref().len().saturating_mul(3);
-        let walls = self.particles.as_ref().len().saturating_mul(walls::WORDS);
+        let walls = self.particles.as_ref().len().saturating_mul(walls::WORDS).saturating_add(1);
         let (kept, step) =
             (Words { per_row: 0, fixed: places.saturating_add(HEAD) }, Words { per_row: 0, fixed: walls });
         Demand { kept, step, binds: true, ..Demand::NONE }
@@ -305,8 +318,10 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let (h, kept, particles) = (bodies.substep.seconds(), &mut *share.kept.fixed, self.particles.as_ref());
-        let walls = walls::of(share.step, particles.len());
+        let (free, step) = share.step.split_at_mut(share.step.len().min(1));
+        let walls = walls::of(step, particles.len());
         walls::gather(walls, particles, bodies);
+        free.fill(f32::INFINITY.to_bits());
         let Some(mut body) = self.body(bodies, kept) else { return };
         if !(h > 0.0) {
             return;
@@ -334,7 +349,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         let (left, spread) = self.spin(bodies, kept, &now);
         let spin = spin + Self::owed(kept);
         let omega = match body.hold {
-            Hold::Free => solve(spread, spin - left),
+            Hold::Free => solve_thin(spread, spin - left),
             Hold::About { axis, .. } => axis * about(axis, spread, spin - left),
             Hold::Fast { .. } => Vec3::ZERO,
         };
@@ -351,27 +366,30 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         }
         if walls.iter().any(Wall::is_near) {
             now.hold = body.hold;
-            let whole = now.whole(spread, give);
-            let moved = whole.press(walls, bodies);
-            self.each(bodies, kept, &mut |bodies, member| {
-                let by = whole.moves(bodies, member.row, &moved);
-                if !member.fixed && by.is_finite() {
-                    bodies.shift(member.row, by);
-                }
-            });
+            free.fill(now.energy(self.spin(bodies, kept, &now).0, spread).to_bits());
+            self.press(bodies, kept, walls, &now.whole(spread, give));
         }
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let (kept, particles) = (&mut *share.kept.fixed, self.particles.as_ref());
-        let walls = walls::of(share.step, particles.len());
+        let (free, step) = share.step.split_at_mut(share.step.len().min(1));
+        let walls = walls::of(step, particles.len());
         let Some(mut body) = self.body(bodies, kept).filter(|_| bodies.substep.seconds() > 0.0) else { return };
         let brake = self.damping * bodies.substep.seconds() / body.mass;
         let taken = if self.compliance > 0.0 { brake / (1.0 + brake) } else { 1.0 };
         let spread = self.share_speed(bodies, kept, &mut body, taken);
         if walls.iter().any(Wall::is_near) {
             let whole = body.whole(spread, max(self.give(&body, bodies.substep.seconds()), taken));
-            let faster = whole.answer(walls, bodies);
+            let (spin, _) = self.spin(bodies, kept, &body);
+            let energy = |motion: &Motion| {
+                let drift = body.drift + motion.along;
+                Body { drift, ..body }.energy(spin + moment(spread, motion.turning), spread)
+            };
+            // As much as it had before walls pressed it, or has by what else has moved it since. What is soft has more, in its shape.
+            let free = free.iter().fold(energy(&Motion::NONE), |most, &free| max(f32::from_bits(free), most));
+            let rigid = self.compliance == 0.0;
+            let faster = whole.answer(walls, bodies, &|motion| rigid && energy(motion) > free * (1.0 + ROUNDING));
             self.each(bodies, kept, &mut |bodies, member| {
                 let by = whole.moves(bodies, member.row, &faster);
                 if !member.fixed && by.is_finite() {
@@ -423,10 +441,16 @@ impl Body {
         bodies.position[row] - self.origin - self.center
     }
 
+    /// The energy of its motion over its mass \[J/kg\], for so much angular momentum.
+    fn energy(&self, spin: Vec3, spread: Mat3) -> f32 {
+        let drift = if self.fixed > 0 { 0.0 } else { dot(self.drift, self.drift) };
+        0.5 * (drift + dot(spin, solve_thin(spread, spin)))
+    }
+
     /// How it answers a push at a particle, of which all bear a share, by the sum of r rᵀ over the mass.
     fn whole(&self, spread: Mat3, share: f32) -> Whole {
         let inverse = match self.hold {
-            Hold::Free => [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| solve(spread, axis)),
+            Hold::Free => [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| solve_thin(spread, axis)),
             Hold::About { axis, .. } => {
                 let [x, y, z] = axis.to_array().map(|part| about(axis, spread, axis * part));
                 [axis * x, axis * y, axis * z]

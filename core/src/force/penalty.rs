@@ -1,9 +1,13 @@
 //! Balls that push each other apart.
 
+use super::near::add_up;
+#[cfg(not(target_os = "none"))]
+use super::near::in_order;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::near::{add_up, in_order};
-use super::{Force, Friction, Needs, Perturbation, State, Telling, Watched};
+use super::{Force, Friction, Needs, Perturbation, State};
+#[cfg(not(target_os = "none"))]
+use super::{Telling, Watched};
 use crate::math::{length, max, min, sqrt};
 use core::ops::Range;
 use glam::Vec3;
@@ -102,10 +106,14 @@ impl Force for Penalty {
     }
 
     fn needs(&self) -> Needs {
-        let tell = (self.stiffness > 0.0).then_some(Telling::TOUCHES);
-        Needs { tell, ..Needs::within(self.reach) }
+        Needs {
+            #[cfg(not(target_os = "none"))]
+            tell: (self.stiffness > 0.0).then_some(Telling::TOUCHES),
+            ..Needs::within(self.reach)
+        }
     }
 
+    #[cfg(not(target_os = "none"))]
     fn tell(&self, watched: &mut Watched<'_>) {
         let Watched { before, now, .. } = *watched;
         let begins = |rows| self.touch(&now, rows).is_some() && self.touch(&before, rows).is_none();

@@ -100,11 +100,27 @@ impl<'a> State<'a> {
         'a: 's,
     {
         let len = position.len();
-        let mut state: State<'s> = self.attributes_of(0..len);
-        (state.time, state.position, state.velocity) = (time, position, velocity);
-        (state.custom, state.near) = (custom.rows(0..len), self.near.at(position));
-        (state.mass_tree, state.charge_tree) = (None, None);
-        state
+        State {
+            time,
+            position,
+            velocity,
+            radius: &self.radius[..len],
+            mass: &self.mass[..len],
+            drag: &self.drag[..len],
+            charge: &self.charge[..len],
+            born: &self.born[..len],
+            dies: &self.dies[..len],
+            slot: &self.slot[..len],
+            key: &self.key[..len],
+            color: &self.color[..len],
+            material: &self.material[..len],
+            materials: self.materials,
+            springs: Springs { serial: &self.springs.serial[..len], ..self.springs },
+            custom: custom.rows(0..len),
+            near: self.near.at(position),
+            mass_tree: None,
+            charge_tree: None,
+        }
     }
 
     /// The attributes of some rows, without places and velocities.

@@ -12,10 +12,8 @@ const ROUNDS: u32 = 64;
 const SETTLED: f32 = 1e-3;
 /// The square of the sine of the least angle between a push and the arm at which it turns what is fixed at a place: others are borne by that.
 const LEAST: f32 = 1e-3;
-/// The shares of elasticity that are tried, until walls give no energy.
-const BOUNCES: [f32; 4] = [1.0, 0.5, 0.25, 0.0];
-/// The share of all the work of walls that may be rounding.
-const ROUNDING: f32 = 1e-4;
+/// Times that the share of elasticity by which walls would give energy is halved.
+const HALVINGS: u32 = 6;
 
 /// What moves as one, and how it answers a push at a particle.
 pub(in crate::constrain) struct Whole {
@@ -32,12 +30,12 @@ pub(in crate::constrain) struct Whole {
 
 /// How something has moved as a whole: its centre \[m\], and about that \[rad\]; or how fast.
 pub(in crate::constrain) struct Motion {
-    along: Vec3,
-    turning: Vec3,
+    pub(in crate::constrain) along: Vec3,
+    pub(in crate::constrain) turning: Vec3,
 }
 
 impl Motion {
-    const NONE: Self = Self { along: Vec3::ZERO, turning: Vec3::ZERO };
+    pub(in crate::constrain) const NONE: Self = Self { along: Vec3::ZERO, turning: Vec3::ZERO };
 }
 
 impl Whole {
@@ -105,8 +103,13 @@ impl Whole {
     /// are given what they answer by themselves; tells by how much the whole is faster.
     ///
     /// Newton's restitution at several places at once, or with friction, can give energy (Kane and Levinson, "Dynamics: Theory and Applications",
-    /// 1985): where it would, all of them are as elastic by half, by a quarter, or not at all.
-    pub(in crate::constrain) fn answer(&self, walls: &mut [Wall], bodies: &mut Bodies<'_>) -> Motion {
+    /// 1985): where what `gains` says would, and all walls stand still, they are so much less elastic.
+    pub(in crate::constrain) fn answer(
+        &self,
+        walls: &mut [Wall],
+        bodies: &mut Bodies<'_>,
+        gains: &dyn Fn(&Motion) -> bool,
+    ) -> Motion {
         let mut faster = Motion::NONE;
         let rate = 1.0 / bodies.substep.seconds();
         for wall in &mut *walls {
@@ -116,12 +119,25 @@ impl Whole {
                 false => wall.touch.end(),
             }
         }
-        let mut is_settled = true;
-        for share in BOUNCES {
-            is_settled = Self::go_over(walls, Wall::is_touched, |wall| wall.bounce(self, bodies, &mut faster, share));
-            if !self.gains(walls, bodies, &faster) {
-                break;
+        let all = self.all(walls, bodies);
+        for wall in walls.iter_mut().filter(|wall| wall.touch.is_on()) {
+            // What was pushed came at this speed, where it has turned to by now.
+            wall.pushed = bodies.velocity[wall.row as usize] - self.changes(wall, bodies, &all);
+        }
+        let mut bounces = |walls: &mut [Wall], bodies: &mut Bodies<'_>, share: f32| {
+            let is_settled =
+                Self::go_over(walls, Wall::is_touched, |wall| wall.bounce(self, bodies, &mut faster, share));
+            (is_settled, gains(&faster) && walls.iter().filter(|wall| wall.touch.is_on()).all(Wall::stands))
+        };
+        let (mut is_settled, is_too_much) = bounces(walls, bodies, 1.0);
+        if is_too_much {
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                let (_, is_too_much) = bounces(walls, bodies, middle);
+                *if is_too_much { &mut high } else { &mut low } = middle;
             }
+            (is_settled, _) = bounces(walls, bodies, low);
         }
         bodies.report.effort.capped += u64::from(!is_settled);
         for wall in walls.iter_mut().filter(|wall| wall.touch.is_on()) {
@@ -131,33 +147,30 @@ impl Whole {
         faster
     }
 
-    /// Tells whether walls that stand still have given it energy: by their impulses, times the mean of the velocities before and now.
-    fn gains(&self, walls: &[Wall], bodies: &Bodies<'_>, faster: &Motion) -> bool {
-        let touched = || walls.iter().filter(|wall| wall.touch.is_on());
-        if !touched().all(Wall::stands) {
-            return false;
-        }
-        let given = |wall: &Wall| wall.held + wall.beside * wall.brake;
+    /// What all walls that it touches have given the whole.
+    fn all(&self, walls: &[Wall], bodies: &Bodies<'_>) -> Motion {
         let mut all = Motion::NONE;
-        for wall in touched() {
-            self.take(bodies, wall.row as usize, given(wall), &mut all);
+        for wall in walls.iter().filter(|wall| wall.touch.is_on()) {
+            self.take(bodies, wall.row as usize, wall.given(), &mut all);
         }
-        let (mut work, mut size) = (0.0, 0.0);
-        for wall in touched() {
-            let (row, given) = (wall.row as usize, given(wall));
-            let now = bodies.velocity[row] + self.moves(bodies, row, faster);
-            let own = given * ((1.0 - self.share) * bodies.inverse_mass[row]);
-            let change = self.moves(bodies, row, &all) + own;
-            work += given.dot(now - change * 0.5);
-            size += length(given) * (length(now) + length(change));
-        }
-        work > ROUNDING * size
+        all
+    }
+
+    /// By how much all that has been given has changed the velocity of a wall's particle.
+    fn changes(&self, wall: &Wall, bodies: &Bodies<'_>, all: &Motion) -> Vec3 {
+        let row = wall.row as usize;
+        self.moves(bodies, row, all) + wall.given() * ((1.0 - self.share) * bodies.inverse_mass[row])
     }
 }
 
 impl Wall {
     fn is_touched(&self) -> bool {
         self.touch.is_on()
+    }
+
+    /// All that it has given its particle.
+    fn given(&self) -> Vec3 {
+        self.held + self.beside * self.brake
     }
 
     /// Pushes its particle out and back to where it touches; tells how far.

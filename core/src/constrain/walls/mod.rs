@@ -7,7 +7,7 @@ mod settle;
 mod solve;
 mod tell;
 
-pub(super) use as_one::Whole;
+pub(super) use as_one::{Motion, Whole};
 pub(super) use follow::follow;
 pub(super) use settle::{report, settle};
 pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, meet};
