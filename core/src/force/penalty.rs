@@ -21,7 +21,8 @@ use glam::Vec3;
 /// numerical model for granular assemblies", Géotechnique 29, 1979.
 ///
 /// [`Observer`](crate::Observer)s are told of two that overlap at the end of a sub-step and did not at its beginning
-/// ([`touched`](crate::Observer::touched)), so of each hit once, as it begins. What has bounced off within a sub-step, of a method that divides it, is not seen.
+/// ([`touched`](crate::Observer::touched)), so of each hit once, as it begins. What has bounced off within a sub-step, of a method that divides it, is not seen; chips
+/// without an operating system do not look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
