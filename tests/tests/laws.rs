@@ -12,6 +12,7 @@ mod carried;
 #[path = "circles/main.rs"]
 mod circles;
 mod clusters;
+mod clusters_at_walls;
 mod collisions;
 mod company;
 mod compounds;

@@ -325,28 +325,29 @@ fn what_cannot_be_filled_is_refused_by_name() {
 }
 
 /// Balls that overlap where they begin get a remark, if they answer each other's touch: in a box they are as far apart as whole numbers of cells allow.
-/// Contacts by position leave those of one body alone.
+/// Contacts by position leave those of a rigid body alone.
 #[test]
 fn a_body_whose_balls_overlap_gets_a_remark() {
     let position = r#""contacts": {"position": {}},"#;
     let force = r#""contacts": {"force": {"stiffness": 1000}},"#;
-    for (spacing, radius, contacts, is_odd) in [
-        (0.1, r#", "radius": 0.08"#, force, true),
-        (0.1, r#", "radius": 0.08"#, "", false),
-        (0.1, r#", "radius": 0.05"#, force, false),
-        (0.1, r#", "radius": 0.08"#, position, false),
-        (0.1, "", r#""contacts": {"impulse": {}},"#, false),
-        (0.3, r#", "radius": 0.16"#, force, false),
-        (0.35, r#", "radius": 0.17"#, force, true),
-        (0.66, "", r#""contacts": {"impulse": {}},"#, true),
+    for (spacing, give, radius, contacts, is_odd) in [
+        (0.1, 1, r#", "radius": 0.08"#, position, true),
+        (0.1, 0, r#", "radius": 0.08"#, position, false),
+        (0.1, 0, r#", "radius": 0.08"#, force, true),
+        (0.1, 1, r#", "radius": 0.08"#, "", false),
+        (0.1, 1, r#", "radius": 0.05"#, position, false),
+        (0.1, 1, "", r#""contacts": {"impulse": {}},"#, false),
+        (0.3, 1, r#", "radius": 0.16"#, position, false),
+        (0.35, 1, r#", "radius": 0.17"#, position, true),
+        (0.66, 1, "", position, true),
     ] {
         let text = format!(
             r#"{{{contacts} "soft_bodies": [{{"form": {{"box": [1, 1, 1]}}, "spacing": {spacing}, "density": 100,
-            "position": [0, 1, 0], "give": 1{radius}}}]}}"#
+            "position": [0, 1, 0], "give": {give}{radius}}}]}}"#
         );
         let file = SceneFile::from_json("it.json", &text).unwrap_or_else(|error| panic!("{error}"));
         let remarks = file.remarks();
         let told = remarks.iter().any(|remark| remark.starts_with("soft_bodies[0].radius: balls of"));
-        assert_eq!(told, is_odd, "{spacing} {radius} {contacts}: {remarks:?}");
+        assert_eq!(told, is_odd, "{spacing} {give} {radius} {contacts}: {remarks:?}");
     }
 }

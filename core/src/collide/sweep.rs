@@ -48,7 +48,7 @@ pub(super) struct Meeting {
     pub(super) is_sink: bool,
 }
 
-/// What a hit brings to rest on a surface.
+/// A particle that a hit brings to rest on a surface.
 struct Landing {
     /// Where it is set off to, and from when to when it goes on.
     beside: Vec3,
@@ -338,7 +338,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         self.stay(path, meeting, &lead, landing)
     }
 
-    /// The way on of what a hit brings to rest on a surface: along that and with it, for the time that is left.
+    /// The way on of a particle that a hit brings to rest on a surface: along that and with it, for the time that is left.
     #[inline(always)]
     fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing) -> Path {
         let Landing { beside, during, surface, ride, incoming, pressing, came, slip, after, .. } = landing;

@@ -165,6 +165,14 @@ impl Bodies<'_> {
         self.marks[row] |= SHIFTED;
     }
 
+    /// Moves a particle by `by` \[m\], or makes it faster by that \[m/s\].
+    pub(super) fn change(&mut self, what: Change, row: usize, by: Vec3) {
+        match what {
+            Change::Place => self.shift(row, by),
+            Change::Velocity => self.velocity[row] += by,
+        }
+    }
+
     /// How far the method has brought a particle beyond where its velocity leads in a sub-step of `h` \[m\].
     pub(crate) fn lead(&self, row: usize, h: f32) -> Vec3 {
         if self.inverse_mass[row] > 0.0 {
@@ -245,6 +253,13 @@ impl Bodies<'_> {
 /// Tells whether two are bound by one name.
 pub(super) fn are_bound(bound: &[u32], row: usize, other: usize) -> bool {
     matches!((bound.get(row), bound.get(other)), (Some(&a), Some(&b)) if a == b && a != 0)
+}
+
+/// The part of a particle that is changed: its place, with its velocity following, or its velocity alone.
+#[derive(Clone, Copy)]
+pub(super) enum Change {
+    Place,
+    Velocity,
 }
 
 /// Finds who is near whom, by the scene's index.

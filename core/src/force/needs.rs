@@ -59,7 +59,7 @@ pub(crate) struct Told<'a> {
     pub(crate) substeps: u32,
     pub(crate) step: f32,
     pub(crate) observer: &'a mut dyn Observer,
-    /// What adds up all forces on all rows, and what lets them tell.
+    /// Functions that add up all forces on all rows, and that let them tell.
     pub(crate) add: &'a dyn Fn(&State<'_>, &mut [Vec3]),
     pub(crate) tell: &'a dyn Fn(&mut Watched<'_>),
 }
@@ -246,7 +246,7 @@ pub struct Needs {
 }
 
 impl Needs {
-    /// What lets forces tell of those who have come to touch, where they may.
+    /// The function that lets forces tell of those who have come to touch, where they may.
     pub(crate) fn telling(&self) -> Option<Telling> {
         #[cfg(not(target_os = "none"))]
         return self.tell;

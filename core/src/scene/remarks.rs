@@ -36,11 +36,12 @@ impl SceneFile {
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].elasticity"), odd_elasticity(Varied::exactly(cloth.elasticity)));
         }
-        // Contacts by position leave balls of one body alone.
-        let apart = self.contacts.filter(|contacts| contacts.contacts().is_none());
         for (i, body) in self.soft_bodies.iter().enumerate() {
             add(format_args!("soft_bodies[{i}].elasticity"), odd_elasticity(Varied::exactly(body.elasticity)));
-            add(format_args!("soft_bodies[{i}].radius"), apart.and_then(|_| body.overlap()));
+            add(
+                format_args!("soft_bodies[{i}].radius"),
+                self.contacts.and_then(|contacts| body.overlap(contacts.contacts().is_some())),
+            );
         }
         for (i, emitter) in self.emitters.iter().enumerate() {
             add(

@@ -135,7 +135,7 @@ impl Scene<'_> {
         }
     }
 
-    /// What lets forces tell of those who come to touch, if somebody watches.
+    /// The function that lets forces tell of those who come to touch, if somebody watches.
     pub(crate) fn telling(&self, observer: &dyn Observer) -> Option<Telling> {
         // Nobody asks the forces where it is known that nobody watches.
         if observer.attention() > Attention::Nothing { self.forces.needs().telling() } else { None }

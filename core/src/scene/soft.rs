@@ -64,8 +64,8 @@ pub struct SoftBody {
     /// How those move; without it they stay.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub motion: Option<MotionBuf>,
-    /// The radius of its particles \[m\]; without it 0.4 times the spacing. Contacts by position leave balls of one body alone; by impulse and by force
-    /// neighbours do not touch as long as it is not squeezed by a fifth (a box of few cells, which may be less wide than that, by less).
+    /// The radius of its particles \[m\]; without it 0.4 times the spacing, so that neighbours do not touch as long as it is not squeezed
+    /// by a fifth (a box of few cells, which may be less wide than that, by less). Contacts by position leave balls of a rigid body alone.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub radius: Option<f32>,
     /// Coefficient of linear drag of all of it \[kg/s\].
@@ -107,9 +107,12 @@ impl SoftBody {
         Some(cells.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n))))
     }
 
-    /// A remark on balls that overlap where they begin, for contacts by impulse and force: the body pulls them back to where those push them apart, for
-    /// ever.
-    pub(super) fn overlap(&self) -> Option<String> {
+    /// A remark on balls that overlap where they begin: the body pulls them back to where contacts push them apart, for ever. Contacts by position leave
+    /// balls of a rigid body alone.
+    pub(super) fn overlap(&self, by_position: bool) -> Option<String> {
+        if by_position && self.rate(1.0).is_none() {
+            return None;
+        }
         let apart = match self.form {
             SoftForm::Box(sides) => {
                 let (cells, side) = boxed(sides * self.scale, self.spacing);
@@ -122,7 +125,7 @@ impl SoftBody {
         (radius > most * (1.0 + 1e-6)).then(|| {
             format!(
                 "balls of {radius} m that are {apart} m apart overlap, so contacts push them apart without end, and may throw the body about: \
-                 take {most} m or less, or contacts by position, which leave balls of one body alone"
+                 take {most} m or less"
             )
         })
     }

@@ -2,6 +2,7 @@
 
 use super::{NOBODY, Wall};
 use crate::constrain::Bodies;
+use crate::constrain::bodies::Change;
 use crate::constrain::contacts::bounce;
 use crate::math::{aside, dot, length, max, min};
 use glam::{Mat3, Vec3};
@@ -15,7 +16,7 @@ const LEAST: f32 = 1e-3;
 /// Times that the share of elasticity by which walls would give energy is halved.
 const HALVINGS: u32 = 6;
 
-/// What moves as one, and how it answers a push at a particle.
+/// A body whose particles move as one, and how it answers a push at one of them.
 pub(in crate::constrain) struct Whole {
     /// The place about which it turns \[m\]: the sum of both, of which the second is small.
     pub(in crate::constrain) origin: Vec3,
@@ -65,6 +66,22 @@ impl Whole {
         motion.along += push * (self.share * self.inverse_mass);
         motion.turning += self.inverse_inertia * self.arm(bodies, row).cross(push) * self.share;
         push * ((1.0 - self.share) * bodies.inverse_mass[row])
+    }
+
+    /// The push along a direction that moves a particle by what is missing, where so much has been given and no more is taken back, and how far that
+    /// moves it.
+    fn push_for(&self, bodies: &Bodies<'_>, row: usize, direction: Vec3, [given, missing]: [f32; 2]) -> [f32; 2] {
+        let weight = self.gives_way(bodies, row, direction);
+        let by = max(given + missing / weight, 0.0) - given;
+        if weight > 0.0 && by.is_finite() { [by, (by * weight).abs()] } else { [0.0; 2] }
+    }
+
+    /// Takes a push at a particle in, and lets that do by itself what all of it does not.
+    fn take_in(&self, bodies: &mut Bodies<'_>, row: usize, push: Vec3, motion: &mut Motion, what: Change) {
+        let alone = self.take(bodies, row, push, motion);
+        if alone != Vec3::ZERO {
+            bodies.change(what, row, alone);
+        }
     }
 
     /// Goes over walls until what they change is small against what they have changed to begin with; tells whether it has become so.
@@ -147,7 +164,7 @@ impl Whole {
         faster
     }
 
-    /// What all walls that it touches have given the whole.
+    /// The motion that all walls which it touches have given it.
     fn all(&self, walls: &[Wall], bodies: &Bodies<'_>) -> Motion {
         let mut all = Motion::NONE;
         for wall in walls.iter().filter(|wall| wall.touch.is_on()) {
@@ -178,13 +195,13 @@ impl Wall {
         let (row, normal) = (self.row as usize, self.normal);
         let at = |bodies: &Bodies<'_>, moved: &Motion| bodies.position[row] + whole.moves(bodies, row, moved);
         let missing = self.offset - at(bodies, moved).dot(normal);
-        let mut far = self.give(whole, bodies, moved, missing, Self::shift);
+        let mut far = self.give(whole, bodies, moved, missing, Change::Place);
         if self.beside != Vec3::ZERO {
             let missing = self.beyond - at(bodies, moved).dot(self.beside);
-            far = max(self.give_beside(whole, bodies, moved, missing, Self::shift), far);
+            far = max(self.give_beside(whole, bodies, moved, missing, Change::Place), far);
         }
         let slip = aside(at(bodies, moved) - self.stuck, normal);
-        max(self.rub(whole, bodies, moved, slip, Self::shift), far)
+        max(self.rub(whole, bodies, moved, slip, Change::Place), far)
     }
 
     /// Brings its particle to leave it as fast as a share of its elasticity wants, with what friction holds; tells by how much it is faster.
@@ -196,28 +213,25 @@ impl Wall {
         };
         let wanted = bounce(&bodies.substep, elasticity, self.ends(bodies));
         let missing = wanted - leaves(bodies, faster, self.velocity).dot(normal);
-        let mut far = self.give(whole, bodies, faster, missing, Self::hasten);
+        let mut far = self.give(whole, bodies, faster, missing, Change::Velocity);
         // How the other face moves is not known.
         if self.brake > 0.0 && self.stands() {
             let ends = [bodies.before[1][row], self.pushed].map(|v: Vec3| v.dot(beside));
             let wanted = bounce(&bodies.substep, elasticity, ends);
             let missing = wanted - leaves(bodies, faster, Vec3::ZERO).dot(beside);
-            far = max(self.give_beside(whole, bodies, faster, missing, Self::hasten), far);
+            far = max(self.give_beside(whole, bodies, faster, missing, Change::Velocity), far);
         }
         let slip = aside(leaves(bodies, faster, self.velocity), normal);
-        max(self.rub(whole, bodies, faster, slip, Self::hasten), far)
+        max(self.rub(whole, bodies, faster, slip, Change::Velocity), far)
     }
 
-    /// Gives its particle what is missing along the normal, and takes back no more than it has given.
-    fn give(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, motion: &mut Motion, missing: f32, own: Own) -> f32 {
+    /// Gives its particle what is missing along the normal, and takes back no more than it has given; tells how far that moves it.
+    fn give(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, motion: &mut Motion, missing: f32, what: Change) -> f32 {
         let (row, normal) = (self.row as usize, self.normal);
-        let (given, weight) = (self.held.dot(normal), whole.gives_way(bodies, row, normal));
-        let by = max(given + missing / weight, 0.0) - given;
-        if !(weight > 0.0 && by.is_finite()) {
-            return 0.0;
-        }
-        self.change(whole, bodies, motion, normal * by, own);
-        (by * weight).abs()
+        let [by, far] = whole.push_for(bodies, row, normal, [self.held.dot(normal), missing]);
+        self.held += normal * by;
+        whole.take_in(bodies, row, normal * by, motion, what);
+        far
     }
 
     /// The same along the normal of the other face.
@@ -227,22 +241,17 @@ impl Wall {
         bodies: &mut Bodies<'_>,
         motion: &mut Motion,
         missing: f32,
-        own: Own,
+        what: Change,
     ) -> f32 {
         let (row, beside) = (self.row as usize, self.beside);
-        let weight = whole.gives_way(bodies, row, beside);
-        let by = max(missing / weight, -self.brake);
-        if !(weight > 0.0 && by.is_finite()) {
-            return 0.0;
-        }
+        let [by, far] = whole.push_for(bodies, row, beside, [self.brake, missing]);
         self.brake += by;
-        let alone = whole.take(bodies, row, beside * by, motion);
-        own(bodies, row, alone);
-        (by * weight).abs()
+        whole.take_in(bodies, row, beside * by, motion, what);
+        far
     }
 
     /// Takes a slip, as far as friction can by what presses, and gives back what was more than that.
-    fn rub(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, motion: &mut Motion, slip: Vec3, own: Own) -> f32 {
+    fn rub(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, motion: &mut Motion, slip: Vec3, what: Change) -> f32 {
         let (row, normal) = (self.row as usize, self.normal);
         let (pressed, [resting, sliding]) = (self.held.dot(normal), self.touch.friction());
         let (held, speed) = (aside(self.held, normal), length(slip));
@@ -258,27 +267,8 @@ impl Wall {
         if !by.is_finite() {
             return 0.0;
         }
-        self.change(whole, bodies, motion, by, own);
+        self.held += by;
+        whole.take_in(bodies, row, by, motion, what);
         length(by) * weight
     }
-
-    /// Changes what it gives its particle.
-    fn change(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, motion: &mut Motion, by: Vec3, own: Own) {
-        self.held += by;
-        let alone = whole.take(bodies, self.row as usize, by, motion);
-        own(bodies, self.row as usize, alone);
-    }
-
-    fn shift(bodies: &mut Bodies<'_>, row: usize, by: Vec3) {
-        if by != Vec3::ZERO {
-            bodies.shift(row, by);
-        }
-    }
-
-    fn hasten(bodies: &mut Bodies<'_>, row: usize, by: Vec3) {
-        bodies.velocity[row] += by;
-    }
 }
-
-/// What a particle does by itself where a push is not borne by all.
-type Own = fn(&mut Bodies<'_>, usize, Vec3);

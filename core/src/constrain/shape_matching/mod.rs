@@ -1,13 +1,17 @@
 //! Clusters that keep their shape: rigid bodies and jellies of particles.
 
+mod body;
+
+use super::bodies::Change;
 #[cfg(feature = "alloc")]
 use super::declared::{Declared, twice};
 use super::turn::{Turn, about, keeping_by, moment, nearest, outer, solve_thin};
-use super::walls::{self, Motion, Wall, Whole};
+use super::walls::{self, Motion, Wall};
 use super::{Bodies, Constraint, Demand, Share, Words};
 use crate::math::{dot, max, sqrt};
 #[cfg(feature = "alloc")]
 use crate::particles::Particle;
+use body::{Body, Hold, Member};
 use glam::{Mat3, Vec3};
 
 /// Keeps a cluster of particles in the shape that it had when the constraint first acted, moved and turned as a whole: a rigid body,
@@ -33,9 +37,10 @@ use glam::{Mat3, Vec3};
 /// block does, and a drum of points on its rim rolls as its inertia says. Only particles meet the scenery, as balls of their radius: what
 /// is pointed may reach in between them. [`RigidBodies`](crate::RigidBodies) meet it, and each other, as boxes and hulls.
 ///
-/// What else holds single particles back (contacts with balls, links) is listed behind it: velocities are shared among all at the sub-step's end, and
+/// Constraints that hold single particles back (contacts with balls, links) are listed behind it: velocities are shared among all at the sub-step's end, and
 /// places in the next sub-step, so that a blow on one of n takes about n sub-steps to stop all of them. Until then it is a little out of shape.
-/// [`Contacts`](super::Contacts) leave balls of one cluster alone, so those may overlap; of a particle in several clusters that is so for the last.
+/// [`Contacts`](super::Contacts) leave balls of a rigid cluster alone, so those may overlap; of a particle in several clusters that is so for the last.
+/// Balls of a soft one keep it from being crushed, and must not overlap in its shape: they would be pushed apart in each sub-step and pulled back.
 ///
 /// Whoever is fixed stays: about one that is fixed the others swing, about two they turn, and three hold all of them. Whoever has died is
 /// left out. Lines and planes of particles are bodies as good as any; one particle alone, or all in one place, are not bound.
@@ -127,6 +132,22 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
                 visit(bodies, Member { row, place: Vec3::new(x, y, z), fixed });
             }
         }
+    }
+
+    /// Moves all that are not fixed by so much, or makes them faster by that.
+    fn change(
+        &self,
+        bodies: &mut Bodies<'_>,
+        kept: &[u32],
+        what: Change,
+        by: &mut dyn FnMut(&Bodies<'_>, &Member) -> Vec3,
+    ) {
+        self.each(bodies, kept, &mut |bodies, member| {
+            let by = by(bodies, &member);
+            if !member.fixed && by.is_finite() {
+                bodies.change(what, member.row, by);
+            }
+        });
     }
 
     /// Where it is as a whole, and how fast; none if there is nothing to move or to keep.
@@ -225,17 +246,6 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         kept[OWED..HEAD].copy_from_slice(&owed.to_array().map(f32::to_bits));
     }
 
-    /// Pushes it out of walls.
-    fn press(&self, bodies: &mut Bodies<'_>, kept: &[u32], walls: &mut [Wall], whole: &Whole) {
-        let moved = whole.press(walls, bodies);
-        self.each(bodies, kept, &mut |bodies, member| {
-            let by = whole.moves(bodies, member.row, &moved);
-            if !member.fixed && by.is_finite() {
-                bodies.shift(member.row, by);
-            }
-        });
-    }
-
     /// The share of the way to their goals that particles go in a sub-step of `h` \[s\].
     fn give(&self, body: &Body, h: f32) -> f32 {
         1.0 / (1.0 + self.compliance * body.mass / (h * h))
@@ -257,12 +267,9 @@ impl<P: AsRef<[u32]>> ShapeMatching<P> {
         if !(taken > 0.0) {
             return spread;
         }
-        self.each(bodies, kept, &mut |bodies, member| {
+        self.change(bodies, kept, Change::Velocity, &mut |bodies, member| {
             let rigid = body.drift + omega.cross(body.place(bodies, member.row));
-            let by = (rigid - bodies.velocity[member.row]) * taken;
-            if !member.fixed && by.is_finite() {
-                bodies.velocity[member.row] += by;
-            }
+            (rigid - bodies.velocity[member.row]) * taken
         });
         if let Hold::Free = body.hold {
             self.owe(bodies, kept, body, spin);
@@ -307,7 +314,10 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     }
 
     fn bind(&self, bodies: &mut Bodies<'_>) {
-        bodies.bind(self.particles.as_ref());
+        // What gives way is kept from being crushed by its own balls.
+        if self.compliance == 0.0 {
+            bodies.bind(self.particles.as_ref());
+        }
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -326,7 +336,7 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         if !(h > 0.0) {
             return;
         }
-        if body.fixed > 0 && self.compliance > 0.0 {
+        if self.compliance > 0.0 && (body.fixed > 0 || walls.iter().any(Wall::presses)) {
             self.each(bodies, kept, &mut |bodies, member| bodies.catch_up(member.row));
         }
         let (spin, _) = self.spin(bodies, kept, &body);
@@ -337,12 +347,9 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         let turn = self.turn(bodies, kept, &body, last);
         kept[1..OWED].copy_from_slice(&turn.0.map(f32::to_bits));
         let (rotation, give) = (turn.matrix(), self.give(&body, h));
-        self.each(bodies, kept, &mut |bodies, member| {
+        self.change(bodies, kept, Change::Place, &mut |bodies, member| {
             let goal = body.center + rotation * (member.place - body.rest);
-            let by = (goal - (bodies.position[member.row] - body.origin)) * give;
-            if !member.fixed && by.is_finite() {
-                bodies.shift(member.row, by);
-            }
+            (goal - (bodies.position[member.row] - body.origin)) * give
         });
         // What rounding has changed of the momenta, or turning too far, is given back.
         let Some(mut now) = self.body(bodies, kept) else { return };
@@ -354,11 +361,8 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
             Hold::Fast { .. } => Vec3::ZERO,
         };
         let drift = body.drift - now.drift;
-        self.each(bodies, kept, &mut |bodies, member| {
-            let by = drift + omega.cross(now.place(bodies, member.row));
-            if !member.fixed && by.is_finite() {
-                bodies.velocity[member.row] += by;
-            }
+        self.change(bodies, kept, Change::Velocity, &mut |bodies, member| {
+            drift + omega.cross(now.place(bodies, member.row))
         });
         now.drift = body.drift;
         if let Hold::Free = body.hold {
@@ -367,7 +371,9 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
         if walls.iter().any(Wall::is_near) {
             now.hold = body.hold;
             free.fill(now.energy(self.spin(bodies, kept, &now).0, spread).to_bits());
-            self.press(bodies, kept, walls, &now.whole(spread, give));
+            let whole = now.whole(spread, give);
+            let moved = whole.press(walls, bodies);
+            self.change(bodies, kept, Change::Place, &mut |bodies, member| whole.moves(bodies, member.row, &moved));
         }
     }
 
@@ -390,88 +396,10 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
             let free = free.iter().fold(energy(&Motion::NONE), |most, &free| max(f32::from_bits(free), most));
             let rigid = self.compliance == 0.0;
             let faster = whole.answer(walls, bodies, &|motion| rigid && energy(motion) > free * (1.0 + ROUNDING));
-            self.each(bodies, kept, &mut |bodies, member| {
-                let by = whole.moves(bodies, member.row, &faster);
-                if !member.fixed && by.is_finite() {
-                    bodies.velocity[member.row] += by;
-                }
-            });
+            self.change(bodies, kept, Change::Velocity, &mut |bodies, member| whole.moves(bodies, member.row, &faster));
             walls::report(walls, bodies);
         }
         walls::follow(walls, bodies);
-    }
-}
-
-/// A particle of a cluster.
-struct Member {
-    row: usize,
-    /// Its place in the shape.
-    place: Vec3,
-    fixed: bool,
-}
-
-/// How a cluster is held by those that are fixed.
-#[derive(Clone, Copy)]
-enum Hold {
-    /// It can turn about its centre.
-    Free,
-    /// It can turn about an axis, which itself turns so fast \[rad/s\].
-    About { axis: Vec3, omega: Vec3 },
-    /// It turns with those that are fixed \[rad/s\].
-    Fast { omega: Vec3 },
-}
-
-/// A cluster as a whole.
-struct Body {
-    /// The place of its first particle, from which all others are told: far from the world's origin differences are exact.
-    origin: Vec3,
-    /// The mass of all that move \[kg\], the number of those that are fixed, and how these hold it.
-    mass: f32,
-    fixed: u32,
-    hold: Hold,
-    /// The centre: of mass, or of those that are fixed; its place in the shape, and its velocity.
-    center: Vec3,
-    rest: Vec3,
-    drift: Vec3,
-}
-
-impl Body {
-    /// Where a particle is, from the centre.
-    fn place(&self, bodies: &Bodies<'_>, row: usize) -> Vec3 {
-        bodies.position[row] - self.origin - self.center
-    }
-
-    /// The energy of its motion over its mass \[J/kg\], for so much angular momentum.
-    fn energy(&self, spin: Vec3, spread: Mat3) -> f32 {
-        let drift = if self.fixed > 0 { 0.0 } else { dot(self.drift, self.drift) };
-        0.5 * (drift + dot(spin, solve_thin(spread, spin)))
-    }
-
-    /// How it answers a push at a particle, of which all bear a share, by the sum of r rᵀ over the mass.
-    fn whole(&self, spread: Mat3, share: f32) -> Whole {
-        let inverse = match self.hold {
-            Hold::Free => [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| solve_thin(spread, axis)),
-            Hold::About { axis, .. } => {
-                let [x, y, z] = axis.to_array().map(|part| about(axis, spread, axis * part));
-                [axis * x, axis * y, axis * z]
-            }
-            Hold::Fast { .. } => [Vec3::ZERO; 3],
-        };
-        let rate = 1.0 / self.mass;
-        let [x, y, z] = inverse.map(|column| column * rate);
-        let inverse_mass = if self.fixed > 0 { 0.0 } else { rate };
-        Whole {
-            origin: self.origin,
-            center: self.center,
-            inverse_mass,
-            inverse_inertia: Mat3::from_cols(x, y, z),
-            share,
-        }
-    }
-
-    /// What it weighs in rotations, a share of the mass.
-    fn weight(&self, bodies: &Bodies<'_>, member: &Member) -> f32 {
-        if member.fixed { 0.0 } else { bodies.mass[member.row] / self.mass }
     }
 }
 
