@@ -92,14 +92,18 @@ fn a_soft_box_of_points_lies_and_slides_as_a_block_does() {
             let mut system = started(&scene, 8, 0);
             let mean = |x: &[Vec3]| x.iter().sum::<Vec3>().dot(down) / 8.0;
             // It sags to begin with.
-            run(&mut system, &scene, 1.0 / 60.0, 120);
+            for frame in 1..=120 {
+                system.step_to(&scene, Time::frame(frame, 60));
+            }
             let (begun, speed) = (mean(system.particles().position), mean(system.particles().velocity));
-            run(&mut system, &scene, 1.0 / 60.0, 60);
+            for frame in 121..=180 {
+                system.step_to(&scene, Time::frame(frame, 60));
+            }
             let way = mean(system.particles().position) - begun;
             let right = speed + 0.5 * 9.81 * (sin - mu * cos).max(0.0);
             let name = format!("{degrees}°, {mu}, {substeps}, {method}, {compliance} m/N, {damping}");
             // An undamped one goes on to swing about its feet.
-            let swings = if damping == 0.0 { 0.01 } else { 0.0 };
+            let swings = if damping == 0.0 { 0.03 } else { 0.0 };
             assert!((way - right).abs() < 0.02 * right + 1e-3 + swings, "{name}: {way} for {right}");
             let clear = system.particles().position.iter().map(|x| x.dot(up)).fold(f32::INFINITY, f32::min);
             assert!(clear > -1e-3, "{name}: {clear}");
