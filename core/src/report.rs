@@ -96,8 +96,9 @@ pub(crate) struct Finding {
 }
 
 /// Particles removed, by cause.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[repr(C)]
 pub struct Died {
     /// By age.
     pub lifetime: u64,
@@ -114,8 +115,9 @@ pub struct Died {
 }
 
 /// Times that a bound cut work short.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[repr(C)]
 pub struct Caps {
     /// A particle hit as often in one sub-step as it may, and waited at the surface for its end.
     pub bounces: u64,
@@ -151,16 +153,54 @@ fn add(sum: &mut u64, more: &u64) {
     *sum = sum.saturating_add(*more);
 }
 
-/// Adds up every field of two counters; the sum of plain numbers saturates.
-macro_rules! add_fields {
-    ($($counter:ident { $($field:ident)+ })+) => {$(
-        impl $counter {
-            #[inline(never)]
-            fn take_in(&mut self, more: &Self) {
-                $(add(&mut self.$field, &more.$field);)+
-            }
-        }
+/// Adds to as many counters.
+#[inline(never)]
+fn add_all(sums: &mut [u64], more: &[u64]) {
+    for (sum, more) in sums.iter_mut().zip(more) {
+        add(sum, more);
+    }
+}
 
+impl Died {
+    fn take_in(&mut self, more: &Self) {
+        add_all(
+            bytemuck::cast_slice_mut(core::slice::from_mut(self)),
+            bytemuck::cast_slice(core::slice::from_ref(more)),
+        );
+    }
+}
+
+impl Caps {
+    fn take_in(&mut self, more: &Self) {
+        add_all(
+            bytemuck::cast_slice_mut(core::slice::from_mut(self)),
+            bytemuck::cast_slice(core::slice::from_ref(more)),
+        );
+    }
+}
+
+impl Effort {
+    /// Adds up every counter, and takes the larger residual.
+    #[inline(never)]
+    fn take_in(&mut self, more: &Self) {
+        let Self { evaluations, lists, streamed, all_pairs, accepted, rejected, solves, iterations, residual, capped } =
+            self;
+        add(evaluations, &more.evaluations);
+        add(lists, &more.lists);
+        add(streamed, &more.streamed);
+        add(all_pairs, &more.all_pairs);
+        add(accepted, &more.accepted);
+        add(rejected, &more.rejected);
+        add(solves, &more.solves);
+        add(iterations, &more.iterations);
+        add(capped, &more.capped);
+        *residual = max(*residual, more.residual);
+    }
+}
+
+/// The sum of plain counters saturates.
+macro_rules! add_assign {
+    ($($counter:ident)+) => {$(
         impl core::ops::AddAssign for $counter {
             fn add_assign(&mut self, other: Self) {
                 self.take_in(&other);
@@ -168,17 +208,7 @@ macro_rules! add_fields {
         }
     )+};
 }
-add_fields! {
-    Died { lifetime sink density chance other nonfinite }
-    Caps { bounces chords springs contacts stalled graphs edges crushed degenerate insufficient_memory }
-    Effort { evaluations lists streamed all_pairs accepted rejected solves iterations capped }
-}
-
-impl core::ops::AddAssign for Report {
-    fn add_assign(&mut self, other: Self) {
-        self.take_in(&other);
-    }
-}
+add_assign!(Died Caps Effort Report);
 
 impl Report {
     /// Adds another one, which a chip is spared a copy of.
@@ -192,7 +222,6 @@ impl Report {
         self.died.take_in(&more.died);
         self.caps.take_in(&more.caps);
         self.effort.take_in(&more.effort);
-        self.effort.residual = max(self.effort.residual, more.effort.residual);
     }
 }
 

@@ -161,6 +161,36 @@ impl Constraint for Wire {
     }
 }
 
+/// Holds the first two of the start in their places to each other, by nothing.
+struct Glue;
+
+impl Constraint for Glue {
+    fn demand(&self) -> Demand {
+        Demand { binds: true, ..Demand::NONE }
+    }
+    fn bind(&self, bodies: &mut Bodies<'_>) {
+        bodies.bind(&[0, 1]);
+    }
+    fn project(&self, _: &mut Bodies<'_>, _: &mut Share<'_>) {}
+}
+
+/// Contacts leave alone whom any constraint binds, and nobody else, in whatever order they are listed.
+#[test]
+fn a_constraint_that_binds() {
+    let ball = |x: f32| Particle { position: Vec3::X * x, radius: 0.1, ..Particle::REST };
+    let start = [ball(0.0), ball(0.15), ball(5.0), ball(5.15)];
+    let (before, behind) = ((Glue, Contacts::HARD), (Contacts::HARD, Glue));
+    let lists: [&dyn Constraint; 3] = [&before, &behind, &(Some(&before), None::<Distance>)];
+    for constraints in lists {
+        let scene = Scene { start: &start, constraints, substeps: 4, ..Scene::EMPTY };
+        let mut system = started(&scene, 4, 0);
+        run(&mut system, &scene, 0.01, 3);
+        let x = system.particles().position;
+        assert_eq!([x[0], x[1]], [start[0].position, start[1].position]);
+        assert!((x[3].distance(x[2]) - 0.2).abs() < 1e-5, "{x:?}");
+    }
+}
+
 #[test]
 fn a_constraint() {
     let bead = |angle: f32| Particle { position: Vec3::new(angle.sin(), -angle.cos(), 0.0) * 2.0, ..Particle::REST };

@@ -45,10 +45,8 @@ pub use goal::Goal;
 pub use gravity::Gravity;
 pub use kind::ForceKind;
 pub use mutual::MutualGravity;
-#[cfg(not(target_os = "none"))]
-pub(crate) use needs::Told;
 pub use needs::{BuildTrees, Listing, Needs, Telling, Writing};
-pub(crate) use needs::{Finder, Written};
+pub(crate) use needs::{Finder, Told, Written};
 pub use penalty::Penalty;
 pub use pressure::Pressure;
 pub use quadratic::QuadraticDrag;
@@ -136,8 +134,7 @@ pub trait Force: Sync {
     }
 
     /// Tells whoever watches of those who have come to touch in a sub-step, if it [needs](Needs::tell) to: at the end of each, when all have moved and
-    /// been held against colliders. Where nobody watches, it is not asked. Chips without an operating system do not ask, and have no such method.
-    #[cfg(not(target_os = "none"))]
+    /// been held against colliders. Where nobody watches, it is not asked.
     fn tell(&self, watched: &mut Watched<'_>) {
         let _ = watched;
     }
@@ -240,7 +237,6 @@ macro_rules! sum_of {
                 part.write(state, custom, dt);
             }
         }
-        #[cfg(not(target_os = "none"))]
         fn tell(&self, watched: &mut Watched<'_>) {
             let $this = self;
             for part in $parts {
@@ -334,7 +330,6 @@ macro_rules! same_as {
             let $this = self;
             $force.write(state, custom, dt);
         }
-        #[cfg(not(target_os = "none"))]
         fn tell(&self, watched: &mut $crate::force::Watched<'_>) {
             let $this = self;
             $force.tell(watched);

@@ -30,12 +30,10 @@ pub(super) fn add_up(
 }
 
 /// Pairs that are put in order at a time.
-#[cfg(not(target_os = "none"))]
-const IN_ORDER: usize = 128;
+const IN_ORDER: usize = if cfg!(target_os = "none") { 16 } else { 128 };
 
 /// Visits those pairs of neighbours that are wanted, each once, in ascending order of their rows, whatever order the index has: by going over all of them as
 /// often as there are more than can be put in order at a time.
-#[cfg(not(target_os = "none"))]
 pub(super) fn in_order(
     state: &State<'_>,
     reach: f32,

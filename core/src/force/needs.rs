@@ -27,7 +27,6 @@ pub struct Writing(pub(crate) fn(Written<'_>));
 
 /// Lets forces tell whoever watches of those who have come to touch in a sub-step, likewise.
 #[derive(Clone, Copy, Debug)]
-#[cfg_attr(target_os = "none", allow(dead_code))]
 pub struct Telling(pub(crate) fn(Told<'_>));
 
 /// All rows at a step's end, and the memory that is laid out for them.
@@ -241,19 +240,10 @@ pub struct Needs {
     pub write: Option<Writing>,
     /// To tell whoever watches of those who have come to touch, by [`Force::tell`](super::Force::tell): [`Telling::TOUCHES`]. A function, likewise; without it
     /// a force is not asked to. A system then keeps where all were as a sub-step began, which takes two vectors for each particle.
-    #[cfg(not(target_os = "none"))]
     pub tell: Option<Telling>,
 }
 
 impl Needs {
-    /// The function that lets forces tell of those who have come to touch, where they may.
-    pub(crate) fn telling(&self) -> Option<Telling> {
-        #[cfg(not(target_os = "none"))]
-        return self.tell;
-        #[cfg(target_os = "none")]
-        None
-    }
-
     /// Neighbours within a radius \[m\], in lists where there is memory for them.
     #[must_use]
     pub fn within(reach: f32) -> Self {
@@ -269,7 +259,6 @@ impl Needs {
             reach: max(self.reach, other.reach),
             lists: self.lists.or(other.lists),
             write: self.write.or(other.write),
-            #[cfg(not(target_os = "none"))]
             tell: self.tell.or(other.tell),
         }
     }

@@ -1,13 +1,9 @@
 //! Balls that push each other apart.
 
-use super::near::add_up;
-#[cfg(not(target_os = "none"))]
-use super::near::in_order;
 #[cfg(feature = "std")]
 use super::near::sum_of_pairs;
-use super::{Force, Friction, Needs, Perturbation, State};
-#[cfg(not(target_os = "none"))]
-use super::{Telling, Watched};
+use super::near::{add_up, in_order};
+use super::{Force, Friction, Needs, Perturbation, State, Telling, Watched};
 use crate::math::{length, max, min, sqrt};
 use core::ops::Range;
 use glam::Vec3;
@@ -21,8 +17,7 @@ use glam::Vec3;
 /// numerical model for granular assemblies", Géotechnique 29, 1979.
 ///
 /// [`Observer`](crate::Observer)s are told of two that overlap at the end of a sub-step and did not at its beginning
-/// ([`touched`](crate::Observer::touched)), so of each hit once, as it begins. What has bounced off within a sub-step, of a method that divides it, is not seen; chips
-/// without an operating system do not look.
+/// ([`touched`](crate::Observer::touched)), so of each hit once, as it begins. What has bounced off within a sub-step, of a method that divides it, is not seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -107,14 +102,10 @@ impl Force for Penalty {
     }
 
     fn needs(&self) -> Needs {
-        Needs {
-            #[cfg(not(target_os = "none"))]
-            tell: (self.stiffness > 0.0).then_some(Telling::TOUCHES),
-            ..Needs::within(self.reach)
-        }
+        let tell = (self.stiffness > 0.0).then_some(Telling::TOUCHES);
+        Needs { tell, ..Needs::within(self.reach) }
     }
 
-    #[cfg(not(target_os = "none"))]
     fn tell(&self, watched: &mut Watched<'_>) {
         let Watched { before, now, .. } = *watched;
         let begins = |rows| self.touch(&now, rows).is_some() && self.touch(&before, rows).is_none();

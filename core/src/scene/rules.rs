@@ -122,7 +122,7 @@ impl Scene<'_> {
         Plan {
             custom: self.custom.count(),
             ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
-            start: self.needs_start() || needs.telling().is_some(),
+            start: self.needs_start() || needs.tell.is_some(),
             constrained,
             constraints: self.constraints.demand().with_names(),
             trees: needs.tree_columns(),
@@ -138,7 +138,7 @@ impl Scene<'_> {
     /// The function that lets forces tell of those who come to touch, if somebody watches.
     pub(crate) fn telling(&self, observer: &dyn Observer) -> Option<Telling> {
         // Nobody asks the forces where it is known that nobody watches.
-        if observer.attention() > Attention::Nothing { self.forces.needs().telling() } else { None }
+        if observer.attention() > Attention::Nothing { self.forces.needs().tell } else { None }
     }
 
     /// Tells whether births or deaths depend on who is near.

@@ -84,7 +84,6 @@ impl Workspace<'_> {
             if scene.is_swept() {
                 self.sweep(scene, layout, substep, old, report, observer);
             }
-            #[cfg(not(target_os = "none"))]
             if let Some(code) = scene.telling(observer) {
                 self.let_forces_tell(scene, layout, substep, code, observer);
             }

@@ -1,16 +1,12 @@
 //! Whoever watches is told how far the step has come, and by forces of those who have come to touch.
 
-use crate::memory::Workspace;
+use crate::collide::Tile;
+use crate::constrain::Substep;
+use crate::force::{State, Telling, Told, Watched};
+use crate::memory::{Layout, Workspace};
 use crate::observe::{Attention, Observer, Phase};
 use crate::scene::Scene;
-#[cfg(not(target_os = "none"))]
-use {
-    crate::collide::Tile,
-    crate::constrain::Substep,
-    crate::force::{State, Telling, Told, Watched},
-    crate::memory::Layout,
-    glam::Vec3,
-};
+use glam::Vec3;
 
 impl Workspace<'_> {
     /// Says how far the step has come, to whoever listens.
@@ -22,7 +18,6 @@ impl Workspace<'_> {
     }
 
     /// Lets forces tell of those who have come to touch in a sub-step that is over.
-    #[cfg(not(target_os = "none"))]
     #[inline(never)]
     pub(super) fn let_forces_tell(
         &mut self,
