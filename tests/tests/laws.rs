@@ -8,6 +8,7 @@ mod balls;
 mod barnes_hut;
 mod births;
 mod blows;
+mod bonds_on_scenery;
 mod carried;
 #[path = "circles/main.rs"]
 mod circles;

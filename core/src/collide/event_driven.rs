@@ -406,6 +406,7 @@ impl EventDriven<'_> {
             mass: self.mass[row],
             elasticity: self.elasticity[row],
             material: self.material[row].checked_sub(1),
+            left: None,
             dt: self.dt.seconds(),
             report: self.report,
             observer: Some(self.observer),

@@ -16,8 +16,9 @@ impl MarkCode {
 
 /// The scenery that a row marked so may meet, and the radius of the ball that it is then; what the marks do is to be read at `TileSweep::follow_past`.
 fn heed<'w>(mark: u32, path: &mut Path, walls: &'w dyn Collider, radius: f32) -> (&'w dyn Collider, f32) {
+    // What constraints have moved goes straight in any case; what hits answer is the velocity that they leave it.
     if mark & SHIFTED != 0 {
-        *path = path.straightened();
+        path.v0 = path.v1;
     }
     (if mark & CARRIED != 0 { &() } else { walls }, if mark & TOUCHING != 0 { 0.5 * radius } else { radius })
 }

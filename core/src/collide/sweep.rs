@@ -5,7 +5,7 @@ use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::tile::Obstacles;
 use crate::force::Friction;
-use crate::material::on_surface;
+use crate::material::{Mixed, on_surface};
 use crate::math::{along, aside, dot, is_zero, largest, length, max, min, minus, plus, scaled, sqrt, unit};
 use crate::observe::{Impact, Observer, Sliding};
 use crate::particles::Id;
@@ -81,6 +81,9 @@ pub(super) struct Sweep<'a, C: ?Sized = dyn Collider + 'a> {
     pub(super) mass: f32,
     pub(super) elasticity: f32,
     pub(super) material: Option<u16>,
+    /// The velocity that constraints have left it \[m/s\], if they have moved it: such goes straight to where they have put it, and hits answer this
+    /// velocity beside that of the way, which it keeps where it meets nothing.
+    pub(super) left: Option<Vec3>,
     /// The step \[s\].
     pub(super) dt: f32,
     pub(super) report: &'a mut Report,
@@ -103,8 +106,9 @@ impl Meeting {
 impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     /// The same past other walls.
     pub(super) fn past<W: Collider>(self, walls: &'a W) -> Sweep<'a, W> {
-        let Self { obstacles, sinks, id, row, radius, mass, elasticity, material, dt, report, observer, .. } = self;
-        Sweep { obstacles, walls, sinks, id, row, radius, mass, elasticity, material, dt, report, observer }
+        let Self { obstacles, sinks, id, row, radius, mass, elasticity, material, left, dt, report, observer, .. } =
+            self;
+        Sweep { obstacles, walls, sinks, id, row, radius, mass, elasticity, material, left, dt, report, observer }
     }
 
     /// Its way through the step, if it may touch anything.
@@ -205,7 +209,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
         for _ in 0..self.obstacles.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
-                return Arrival { position: path.x1, velocity: path.v1, pending_death: PendingDeath::Lives };
+                let velocity = self.left.unwrap_or(path.v1);
+                return Arrival { position: path.x1, velocity, pending_death: PendingDeath::Lives };
             };
             if meeting.is_sink {
                 return meeting.arrival(&path);
@@ -214,7 +219,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         }
         self.report.caps.bounces += 1;
         let position = self.walls.carry(path.x0, self.radius, path.during);
-        Arrival { position, velocity: path.v0, pending_death: PendingDeath::Lives }
+        Arrival { position, velocity: self.left.unwrap_or(path.v0), pending_death: PendingDeath::Lives }
     }
 
     /// The first hit along the path's chords, at its instant on the path itself.
@@ -312,7 +317,9 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
         let Self { id, row, mass, .. } = *self;
         let (time, closing, after) = (during[0], max(-incoming, 0.0), along(plus(surface, slip), normal, outgoing));
+        let told = self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing]).unwrap_or([before, after]);
         if let Some(observer) = &mut self.observer {
+            let [before, after] = told;
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
@@ -336,6 +343,31 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             friction,
         };
         self.stay(path, meeting, &lead, landing)
+    }
+
+    /// Answers with a hit the velocity that constraints have left, if they have: says what it was and is. That of the way, which comes in and goes out
+    /// so fast, is the mean of the sub-step; what forces have changed since presses on the surface, or is taken off the rebound, as they go on
+    /// after it. A push that has brought it there and left no such velocity is no blow.
+    fn answer_left(
+        &mut self,
+        hit: &Hit,
+        mixed: &Mixed,
+        surface: Vec3,
+        [incoming, outgoing]: [f32; 2],
+    ) -> Option<[Vec3; 2]> {
+        let left = self.left.as_mut()?;
+        let relative = minus(*left, surface);
+        let closing = dot(relative, hit.normal);
+        let since = closing - incoming;
+        let leaving = match () {
+            () if !(since > 0.0) => max(outgoing + since, 0.0),
+            () if closing < 0.0 => -closing * mixed.elasticity,
+            () => closing,
+        };
+        let came = along(relative, hit.normal, -closing);
+        let slip = plus(came, mixed.friction.answer(came, leaving - closing));
+        let before = core::mem::replace(left, along(plus(surface, slip), hit.normal, leaving));
+        Some([before, *left])
     }
 
     /// The way on of a particle that a hit brings to rest on a surface: along that and with it, for the time that is left.

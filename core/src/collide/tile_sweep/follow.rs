@@ -7,7 +7,6 @@ use crate::collide::tile::Tile;
 use crate::constrain::{CARRIED, DONE, SHIFTED, TOUCHING};
 use crate::observe::Observer;
 use crate::particles::Id;
-use crate::reap::PendingDeath;
 use crate::shape::{Collider, Facing};
 use glam::Vec3;
 
@@ -65,6 +64,7 @@ impl TileSweep<'_, '_> {
             mass: lives.mass[row],
             elasticity: m.elasticity[row],
             material: lives.material[row].checked_sub(1),
+            left: None,
             dt: dt.seconds(),
             report,
             observer,
@@ -93,7 +93,10 @@ impl TileSweep<'_, '_> {
         let mark = if row < old { self.past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
         // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
         // may not touch anything.
-        let path = if mark & SHIFTED != 0 { path.straightened() } else { path };
+        let (path, left) = match mark & SHIFTED {
+            0 => (path, None),
+            _ => (path.straightened(), Some(path.v1)),
+        };
         let radius = if mark & TOUCHING != 0 { 0.5 * radius } else { radius };
         if !path.is_finite() {
             return;
@@ -104,11 +107,10 @@ impl TileSweep<'_, '_> {
         }
         let (walls, known): (&dyn Collider, _) =
             if mark & CARRIED != 0 { (&(), Some(Facing::Nothing)) } else { (walls, known) };
-        let before = self.report.hits + self.report.caps.bounces;
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
         // Who is born where a sub-step ends is let go in that.
         let is_newborn = row >= old && born > now;
-        let sweep = self.sweep(row, radius, walls, sinks);
+        let sweep = Sweep { left, ..self.sweep(row, radius, walls, sinks) };
         // Whoever is near one face alone goes the short way, among however many things.
         let facing = match known {
             None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),
@@ -119,13 +121,6 @@ impl TileSweep<'_, '_> {
             _ => { sweep }.travel(&path, is_newborn, may_lie),
         };
         let Some(end) = arrival else { return };
-        // Whom constraints have moved keeps the velocity that they leave it, which is not that of the straight way, where it meets nothing.
-        if mark & SHIFTED != 0
-            && end.pending_death == PendingDeath::Lives
-            && self.report.hits + self.report.caps.bounces == before
-        {
-            return;
-        }
         let tile = &mut *self.tile;
         (tile.position[row], tile.velocity[row], tile.pending_death[row]) =
             (end.position, end.velocity, end.pending_death);
