@@ -4,7 +4,7 @@ use pointmass::constrain::{RigidBodies, RigidBox};
 use pointmass::force::Friction;
 use pointmass::motion::{Key, Motion};
 use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
-use pointmass::{ContactMaterial, Gravity, Heap, Particle, Scene, System, Time, Vec3};
+use pointmass::{ContactMaterial, Contacts, Gravity, Heap, Particle, Scene, System, Time, Vec3};
 use pointmass_tests::started;
 
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
@@ -225,5 +225,91 @@ fn nothing_sleeps_in_space() {
     for of in &bodies.boxes {
         let (x, v) = mean(&system, of);
         assert!((v - velocity).length() < 1e-6 && (x - of.center - velocity * 20.0).length() < 1e-4, "{x}, {v}");
+    }
+}
+
+/// However a wall comes at who lies still, within sub-steps or many steps, and from wherever: it takes him along, asleep or awake.
+#[test]
+fn a_wall_that_comes_takes_along_who_lies_still() {
+    for (fast, size) in [0.6f32, 1.5, 3.0, 8.0].into_iter().flat_map(|v| [0.01, 0.3].map(|size| (v, size))) {
+        for (rate, substeps, rests, gap) in
+            [(60, 20, 60, 0.3f32), (60, 20, 60, 0.51), (60, 20, 0, 0.93), (24, 40, 30, 0.7), (240, 5, 240, 0.2)]
+        {
+            let of = RigidBox::new(Vec3::splat(size), Vec3::Y * size, 0);
+            let start = of.solid(PART);
+            // Beside it when it has lain there for some time, and on into the step by a part of that.
+            let (frames, fast) = (rests + rate, fast * (size / 0.01).sqrt());
+            let face = -size - fast * ((rests as f32 + 10.0 + gap) / rate as f32);
+            let wall =
+                Cuboid { min: Vec3::new(face - size, 0.0, -3.0 * size), max: Vec3::new(face, 4.0 * size, 3.0 * size) };
+            let wall = Moving::new(
+                wall,
+                &Aabb { min: wall.min, max: wall.max },
+                Motion { drift: Vec3::X * fast, ..Motion::STILL },
+            );
+            let (bodies, materials) = (RigidBodies::boxes([of]), rough(0.3));
+            let scene = Scene {
+                start: &start,
+                forces: &DOWN,
+                colliders: &(GROUND, wall),
+                materials: &materials,
+                constraints: &bodies,
+                substeps,
+                ..Scene::EMPTY
+            };
+            let mut system = started(&scene, start.len(), 0);
+            for frame in 1..=u64::from(frames) {
+                system.step_to(&scene, Time::frame(frame, rate));
+            }
+            let face = face + fast * (frames as f32 / rate as f32);
+            let (place, _) = mean(&system, &of);
+            assert!(
+                place.x > face + 0.5 * size,
+                "{fast} m/s, {size} m, {rate} Hz, {substeps}, {gap}: {place} behind {face}"
+            );
+        }
+    }
+}
+
+/// What a floor does within a step, it does to who lies on it within a sub-step: it drops from under him, and he falls; it swings, and he stays on it.
+#[test]
+fn a_floor_that_moves_is_felt_in_sub_steps() {
+    for (rate, substeps) in [(24u32, 20u32), (60, 8), (240, 2)] {
+        for (swing, phase) in [(0.1f32, 0.0), (0.1, 0.25), (0.05, 0.75)] {
+            let slab = Cuboid { min: Vec3::new(-2.0, -0.2, -2.0), max: Vec3::new(2.0, 0.0, 2.0) };
+            // Half of what gravity holds down, at turning points that are steps' instants.
+            let frequency = (0.5 * 9.81 / swing).sqrt() / core::f32::consts::TAU;
+            let frequency = (frequency * 8.0).floor() / 8.0;
+            let motion = Motion { swing: Vec3::Y * swing, frequency, phase, ..Motion::STILL };
+            let floor = |t: f32| swing * (core::f32::consts::TAU * (frequency * t + phase)).sin();
+            let of = RigidBox::new(Vec3::splat(0.1), Vec3::Y * (0.1 + floor(0.0)), 0);
+            let ball = Particle { radius: 0.1, position: Vec3::new(1.0, 0.1 + floor(0.0), 0.0), ..PART };
+            let start: Vec<_> = of.solid(PART).into_iter().chain([ball]).collect();
+            let slab = Moving::new(slab, &Aabb { min: slab.min, max: slab.max }, motion);
+            let (bodies, materials) = (RigidBodies::boxes([of]), rough(0.3));
+            let contacts = Contacts::default();
+            let scene = Scene {
+                start: &start,
+                forces: &DOWN,
+                colliders: &slab,
+                materials: &materials,
+                constraints: &(bodies, contacts),
+                substeps,
+                ..Scene::EMPTY
+            };
+            let mut system = started(&scene, start.len(), 0);
+            let h = 1.0 / (rate as f32 * substeps as f32);
+            for frame in 1..=u64::from(4 * rate) {
+                system.step_to(&scene, Time::frame(frame, rate));
+                let at = floor(frame as f32 / rate as f32);
+                let gaps =
+                    [mean(&system, &of).0.y, system.particles().position[start.len() - 1].y].map(|y| y - 0.1 - at);
+                let most = 4.0 * 9.81 * h * h + 2e-4;
+                assert!(
+                    gaps.iter().all(|gap| gap.abs() < most),
+                    "{rate} Hz, {substeps}, {swing} m, {phase}, frame {frame}: {gaps:?} of {most}"
+                );
+            }
+        }
     }
 }

@@ -66,6 +66,10 @@ impl<M: Surface + Sync> Force for Sink<M> {
 }
 
 impl<M: Collider> Collider for Sink<M> {
+    fn moves(&self) -> bool {
+        self.shape.moves()
+    }
+
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         self.shape.first_hit(segment)
     }

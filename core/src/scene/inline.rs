@@ -56,6 +56,10 @@ impl Surface for NoMesh {
 }
 
 impl Collider for NoMesh {
+    fn moves(&self) -> bool {
+        false
+    }
+
     fn first_hit(&self, _: &Segment) -> Option<Hit> {
         match *self {}
     }

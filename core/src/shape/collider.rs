@@ -117,6 +117,12 @@ pub trait Collider: Sync {
     fn is_empty(&self) -> bool {
         false
     }
+
+    /// Tells whether any of it may move. By default it says so, which is always right; no is for speed: what lies still then is held against it once a
+    /// step, not in each sub-step.
+    fn moves(&self) -> bool {
+        true
+    }
 }
 
 /// A collider that maps of space may turn into another: what [`Placed`](super::Placed) puts somewhere.
@@ -203,6 +209,9 @@ impl Collider for () {
     fn is_empty(&self) -> bool {
         true
     }
+    fn moves(&self) -> bool {
+        false
+    }
 }
 
 impl<T: Collider + ?Sized> Collider for &T {
@@ -236,6 +245,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn is_empty(&self) -> bool {
         (**self).is_empty()
+    }
+    fn moves(&self) -> bool {
+        (**self).moves()
     }
 }
 
@@ -271,6 +283,9 @@ impl<T: Collider> Collider for [T] {
     fn is_empty(&self) -> bool {
         self.iter().all(Collider::is_empty)
     }
+    fn moves(&self) -> bool {
+        self.iter().any(Collider::moves)
+    }
 }
 
 /// Everything that holds a slice is what the slice is.
@@ -301,6 +316,9 @@ macro_rules! lists {
             }
             fn is_empty(&self) -> bool {
                 self.iter().all(Collider::is_empty)
+            }
+            fn moves(&self) -> bool {
+                self.iter().any(Collider::moves)
             }
         }
     )+};
@@ -357,6 +375,11 @@ macro_rules! tuples {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
                 None$(.or_else(|| $name.ride(seat)))+
+            }
+            fn moves(&self) -> bool {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                $($name.moves())||+
             }
             fn is_empty(&self) -> bool {
                 #[allow(non_snake_case)]

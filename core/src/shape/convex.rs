@@ -130,6 +130,9 @@ pub(super) fn ball_contacts(solid: &impl Hollow, center: Vec3, reach: f32, visit
 macro_rules! convex_collider {
     ($solid:ty $(, $as_solid:expr)?) => {
         impl crate::shape::Collider for $solid {
+            fn moves(&self) -> bool {
+                false
+            }
             $(#[cfg(feature = "alloc")]
             fn solid(&self) -> Option<crate::shape::Solid> {
                 let as_solid: fn(&Self) -> crate::shape::Solid = $as_solid;

@@ -55,6 +55,10 @@ impl Surface for Disc {
 }
 
 impl Collider for Disc {
+    fn moves(&self) -> bool {
+        false
+    }
+
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.bounds().with_slack().overlaps(bounds)
     }

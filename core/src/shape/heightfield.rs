@@ -324,6 +324,10 @@ impl Pieces for HeightField<'_> {
 }
 
 impl Collider for HeightField<'_> {
+    fn moves(&self) -> bool {
+        false
+    }
+
     /// Walks strip by strip across the grid, along the axis on which the path goes farther, and in each only over the
     /// cells that the ball may touch there.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {

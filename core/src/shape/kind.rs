@@ -79,6 +79,9 @@ impl<M: Surface> Surface for Shape<M> {
 }
 
 impl<M: Collider> Collider for Shape<M> {
+    fn moves(&self) -> bool {
+        each!(self, s => s.moves())
+    }
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         each!(self, s => s.first_hit(segment))
     }

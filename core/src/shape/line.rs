@@ -47,6 +47,10 @@ impl Surface for Line {
 }
 
 impl Collider for Line {
+    fn moves(&self) -> bool {
+        false
+    }
+
     fn may_touch(&self, bounds: &Aabb) -> bool {
         let Aabb { min, max } = self.bounds();
         Aabb { min: min - TOUCH, max: max + TOUCH }.overlaps(bounds)

@@ -236,6 +236,10 @@ impl Pieces for Mesh<'_> {
 }
 
 impl Collider for Mesh<'_> {
+    fn moves(&self) -> bool {
+        false
+    }
+
     /// Finds the first hit; of hits at one time, that of the lower triangle. Watertight: an edge shared by two
     /// triangles is judged by the same arithmetic for both.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
@@ -310,6 +314,9 @@ macro_rules! through_view {
             }
         }
         impl Collider for $owner {
+            fn moves(&self) -> bool {
+                false
+            }
             fn first_hit(&self, segment: &Segment) -> Option<Hit> {
                 self.view().first_hit(segment)
             }

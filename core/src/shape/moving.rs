@@ -117,6 +117,10 @@ fn pieces(segment: &Segment, ends: &[Frame; 2]) -> u32 {
 }
 
 impl<C: Collider, M: Script> Collider for Moving<C, M> {
+    fn moves(&self) -> bool {
+        self.motion.is_some() || self.collider.moves()
+    }
+
     /// Follows the segment in the frame of what moves, in as many straight pieces as that takes: they share their ends,
     /// and which side an end lies on is a pure function of it and the instant.
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {

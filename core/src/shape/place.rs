@@ -51,6 +51,10 @@ impl<C: Surface> Placed<C> {
 }
 
 impl<C: Mapped> Collider for Placed<C> {
+    fn moves(&self) -> bool {
+        self.collider.moves()
+    }
+
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let Some(maps @ (to_world, _)) = &self.maps else {
             return self.collider.first_hit(segment).map(|hit| Hit { material: self.material, ..hit });

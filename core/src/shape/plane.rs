@@ -39,6 +39,10 @@ impl Surface for Plane {
 }
 
 impl Collider for Plane {
+    fn moves(&self) -> bool {
+        false
+    }
+
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let side = |point: Vec3| dot(self.normal, point - self.point);
         // A ball smaller than rounding is a point. The normal is brought to unit length only for who meets it.
@@ -91,6 +95,10 @@ impl Plane {
 }
 
 impl Collider for Face {
+    fn moves(&self) -> bool {
+        false
+    }
+
     #[cfg_attr(not(one_by_one), inline(always))]
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let slack = segment.slack(self.size());

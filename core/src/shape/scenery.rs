@@ -201,6 +201,10 @@ impl<C: Collider> Many for Scenery<C> {
 }
 
 impl<C: Collider> Collider for Nearby<'_, C> {
+    fn moves(&self) -> bool {
+        self.of.moves()
+    }
+
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let mut best = None;
         self.near(&segment.bounds(), |thing| best = earlier(best, thing.first_hit(segment)));
@@ -246,6 +250,10 @@ impl<C: Collider> Collider for Nearby<'_, C> {
 }
 
 impl<C: Collider> Collider for Scenery<C> {
+    fn moves(&self) -> bool {
+        self.things.moves()
+    }
+
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         self.anywhere().first_hit(segment)
     }

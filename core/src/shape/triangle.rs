@@ -77,6 +77,10 @@ impl Surface for Triangle {
 }
 
 impl Collider for Triangle {
+    fn moves(&self) -> bool {
+        false
+    }
+
     fn may_touch(&self, bounds: &Aabb) -> bool {
         self.bounds().with_slack().overlaps(bounds)
     }

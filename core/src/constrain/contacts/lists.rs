@@ -54,10 +54,8 @@ pub(super) struct Listed {
     pub(super) faces: u32,
     /// The sub-step before which they have to be made anew.
     pub(super) until: u32,
-    /// 1 if somebody is so fast that two could pass each other within a sub-step, else 0; likewise the next three.
+    /// 1 if somebody is so fast that two could pass each other within a sub-step, else 0; likewise the next two.
     pub(super) fast: u32,
-    /// 1 if a face moves: then faces are listed anew for every sub-step.
-    pub(super) moving: u32,
     /// 1 if pairs are in their order from the ground up.
     pub(super) sorted: u32,
     /// 1 if any of them has friction.
@@ -100,7 +98,8 @@ pub(super) fn gather(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>) {
         *kept.lists = Listed::default();
     }
     if number < kept.lists.until {
-        if kept.lists.moving != 0 {
+        // What stands still at the moment may be on the turn.
+        if bodies.colliders.moves() {
             kept.lists.faces = 0;
             gather_faces(bodies, kept, bodies.substep.seconds());
         }
@@ -191,7 +190,6 @@ fn gather_faces(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, seconds: f32) {
             lists.faces += 1;
             let Contact { point, normal, material, .. } = *contact;
             let touch = Touch::new(on_surface(bodies.materials, elasticity, own, material));
-            lists.moving |= u32::from(contact.velocity != Vec3::ZERO);
             lists.rough |= u32::from(touch.has_friction());
             let (way, velocity) = carried(colliders, center, contact, substep);
             let (row, offset) = (row as u32, normal.dot(point + way));

@@ -261,6 +261,8 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
             if is_news {
                 sleep::wake_all(kept.bodies);
             }
+        }
+        if bodies.substep.number == 0 || bodies.colliders.moves() {
             sleep::look_around(bodies, &mut kept);
         }
         if lists::gather(bodies, &mut kept, self.forms(), share.scratch, is_news) {

@@ -28,7 +28,7 @@ struct Visit<'a> {
     reach: f32,
 }
 
-/// Looks where a body touches the scenery, or will within two sub-steps, if it has gone far enough since the last time.
+/// Looks where a body touches the scenery, or will within two sub-steps, if it has gone far enough since the last time, or the scenery may have.
 ///
 /// Its corners are asked for, as points: one that is beyond a surface, as seen from the body's middle, is met where the way there crosses it.
 /// Then the places of the scenery nearest to the body's middle, where they lie in it: edges and spheres smaller than it. A ball has no corners. Of
@@ -36,7 +36,7 @@ struct Visit<'a> {
 pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, forms: Forms<'_>, number: u32, slots: &mut [Manifold]) {
     let h = bodies.substep.seconds();
     let (way, small) = (body.speed() * h, body.small());
-    let is_new = bodies.substep.number == 0;
+    let is_new = bodies.substep.number == 0 || bodies.colliders.moves();
     if !is_new && body.spare > way {
         body.spare -= way;
         return;
