@@ -134,13 +134,14 @@ impl<'a> Neighbours<'a> {
     ) {
         let (mut found, mut len, mut of) = ([0; MOST], 0, None);
         let mut nearby = Nearby::NOBODY;
-        // Whom the index has found is near, whatever its scale; in a room it looks a little farther, as ways are others there.
-        let (farther, sure) = self.room.map_or((reach, f32::INFINITY), |room| (reach + room.slack(), reach));
+        // In a room it looks a little farther, as ways are others there. Whom it has found is held against the reach once more: where somebody is so far off
+        // that it has scaled places down, all others may be near each other to it.
+        let farther = self.room.map_or(reach, |room| reach + room.slack());
         let mut finish = |row: Option<usize>, found: &mut [u32; MOST], len: usize| match row {
             Some(row) if len <= MOST => {
                 found[..len].sort_unstable();
                 let (own, others) = (self.place(row), found[..len].iter().map(|&other| self.entry(other)));
-                Visit { own, others, reach: sure, room: self.room, nearby: &mut nearby, visit }.pay();
+                Visit { own, others, reach, room: self.room, nearby: &mut nearby, visit }.pay();
             }
             // Neighbours too many for that are a good part of all points.
             Some(row) => self.by_all(row, reach, &mut *visit),
@@ -174,7 +175,7 @@ impl<'a> Neighbours<'a> {
         visit: &mut dyn FnMut(usize, &Nearby),
     ) {
         let (mut found, mut len, own, mut nearby) = ([0; MOST], 0, self.place(row), Nearby::NOBODY);
-        let (farther, sure) = self.room.map_or((reach, f32::INFINITY), |room| (reach + room.slack(), reach));
+        let farther = self.room.map_or(reach, |room| reach + room.slack());
         index.within(own.1, farther, &mut |others| {
             for &other in others.iter().filter(|&&other| other as usize != row) {
                 if let Some(room) = found.get_mut(len) {
@@ -191,7 +192,7 @@ impl<'a> Neighbours<'a> {
         };
         let rest = (first..self.points.len()).filter(is_near).map(|other| self.entry(other as u32));
         let others = found.iter().map(|&other| self.entry(other)).chain(rest);
-        Visit { own, others, reach: sure, room: self.room, nearby: &mut nearby, visit }.pay();
+        Visit { own, others, reach, room: self.room, nearby: &mut nearby, visit }.pay();
     }
 
     /// The neighbours of one row, found by looking at all others.
