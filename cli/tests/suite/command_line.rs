@@ -150,6 +150,26 @@ fn numbers_below_zero_are_told_what_is_allowed() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
+/// What `--help` says of it: N steps each of which has the scene's own sub-steps.
+#[test]
+fn substeps_of_the_command_line_come_on_top_of_the_scenes() {
+    let scene = |substeps: u32| {
+        format!(
+            r#"{{"run": {{"substeps": {substeps}, "dt": 0.125, "duration": 1}}, "forces": [{{"gravity": {{"acceleration": [0, -9, 0]}}}}],
+            "particles": [{{"fixed": true}}, {{"position": [1, 0, 0]}}], "constraints": [{{"distance": {{"ends": [0, 1], "length": 1}}}}]}}"#
+        )
+    };
+    let folder = Folder::new();
+    for substeps in [1, 3] {
+        folder.write(&format!("{substeps}.json"), scene(substeps));
+    }
+    let both = folder.hash("3.json --substeps 4");
+    assert_eq!(folder.hash("3.json --dt 0.03125"), both);
+    assert_ne!(folder.hash("1.json --substeps 4"), both);
+    let help = folder.run("run --help").fine().stdout;
+    assert!(help.contains("run.substeps"), "{help}");
+}
+
 #[test]
 fn the_json_report_has_exactly_its_fields() {
     let folder = Folder::with("busy.scn", BUSY);
