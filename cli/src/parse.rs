@@ -15,6 +15,17 @@ pub(crate) fn whole(text: &str, least: f64, most: f64, expected: &str) -> Result
     if fits { Ok(value as usize) } else { Err(format!("expected {expected}")) }
 }
 
+/// A whole number of 64 bits.
+pub(crate) fn natural(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
+/// The same, but for zero.
+pub(crate) fn positive(text: &str) -> Result<u64, String> {
+    let value = natural(text).ok().filter(|&value| value > 0);
+    value.ok_or_else(|| format!("expected a whole number from 1 to {}", u64::MAX))
+}
+
 /// Seconds, which may be a fraction such as 1/60.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let longest = f64::from(1u32 << 31);
@@ -74,6 +85,16 @@ mod tests {
         for bad in ["0", "1", "-5", "1.5", "1e9", "nan", "x", ""] {
             assert_eq!(count(bad), Err("expected points".into()), "{bad}");
         }
+    }
+
+    #[test]
+    fn whole_numbers_keep_all_their_bits() {
+        assert_eq!([natural("0"), natural("18446744073709551615")], [Ok(0), Ok(u64::MAX)]);
+        assert_eq!([positive(" 1"), positive("18446744073709551615")], [Ok(1), Ok(u64::MAX)]);
+        for bad in ["-1", "1.5", "1e3", "x", "", "18446744073709551616"] {
+            assert!(natural(bad).is_err() && positive(bad).is_err(), "{bad}");
+        }
+        assert!(positive("0").is_err());
     }
 
     #[test]

@@ -33,10 +33,10 @@ pub(crate) struct Render {
     #[arg(long, value_name = "FILE", value_parser = format)]
     pub(crate) out: (PathBuf, PictureFormat),
     /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "640x480", value_parser = size)]
     pub(crate) size: (u32, u32),
     /// Pictures per second of the scene's time
-    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) fps: u32,
     /// From where it is seen.
     #[command(flatten)]
@@ -46,7 +46,7 @@ pub(crate) struct Render {
     pub(crate) style: Option<Style>,
     /// Draw what moves along its way of the last SECONDS before each picture, as a camera does whose shutter is open so long, at most from
     /// picture to picture; without it as the scene's camera says. Points take no longer for it; all else is drawn up to 32 times
-    #[arg(long, value_name = "SECONDS", value_parser = shutter)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = shutter)]
     pub(crate) shutter: Option<f64>,
     /// Draw on top how it works
     #[arg(long, value_name = "WHAT,...", value_delimiter = ',')]

@@ -3,7 +3,7 @@
 use crate::check::Bounds;
 use crate::load::{self, Disk, Reading};
 use crate::outcome::{Failure, Outcome, warn};
-use crate::parse::{number, seconds, step};
+use crate::parse::{natural, number, seconds, step};
 use crate::stage::size;
 use crate::stall;
 use crate::substeps::{Pace, Substeps};
@@ -25,10 +25,10 @@ pub(crate) struct Settings {
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// How many seconds; by default what the scene says, 10 for .scn
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = seconds)]
     pub(crate) duration: Option<f64>,
     /// The step in seconds, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
-    #[arg(long, value_name = "S", value_parser = step)]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = step)]
     pub(crate) dt: Option<f64>,
     /// The method: euler, symplectic, midpoint, lecture_midpoint, verlet, rk4, adaptive, embedded or implicit; by default
     /// what the scene says, rk4 for .scn
@@ -47,23 +47,24 @@ pub(crate) struct Settings {
     #[arg(long, value_name = "NAME")]
     pub(crate) collision_index: Option<rays::Structure>,
     /// The seed of all randomness; by default what the scene says, else 1
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = natural)]
     pub(crate) seed: Option<u64>,
     /// How many particles may live at once, what finds no room is refused and counted; by default what the scene says
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=500_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=500_000_000))]
     pub(crate) capacity: Option<u32>,
-    /// Divide every step into N sub-steps, or `auto`: into as few as springs, drag and contacts need to be stable,
-    /// constraints to be met within 1 % and --tolerance asks, at most 1024
-    #[arg(long, value_name = "N|auto", default_value = "1")]
+    /// Divide every step into N, each of which is cut into the sub-steps that the scene has of its own as well (`run.substeps`, or those of contacts by
+    /// position): with 4 here and 12 there it has 48. Or `auto`: into as few as springs, drag and contacts need to be stable, constraints to be met
+    /// within 1 % and --tolerance asks, at most 1024
+    #[arg(long, value_name = "N|auto", allow_negative_numbers = true, default_value = "1")]
     pub(crate) substeps: Substeps,
     /// With --substeps auto, how far a step may end, in metres and at any particle, from where half as many sub-steps
     /// would take it; by default 1e-4 of the radius of what is there at the start. With adaptive and embedded, how far an
     /// inner step may err; by default what the scene says, 1e-4
-    #[arg(long, value_name = "M", value_parser = tolerance)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// On how many threads many particles are stepped, to the same bits: whole steps where they have nothing to do with each
     /// other, else the sums of their forces; and pictures drawn, to the same bits too; by default as many as the machine has
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 }
 

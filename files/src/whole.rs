@@ -5,6 +5,7 @@
 
 use crate::outcome::{Failure, Outcome};
 use crate::temporary::{PREFIX, Temporary, uninterrupted};
+use std::collections::HashSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -149,9 +150,42 @@ impl Series {
     }
 }
 
-/// Gives all of them their names, or none of them if one cannot be written or something is in its way.
+/// Refuses to begin files of which two would be one, each given with the option that asks for it: the later would take the place of the earlier.
+pub fn keep_apart<'a>(outs: impl IntoIterator<Item = (&'a str, PathBuf)>) -> Outcome {
+    let mut begun: Vec<(PathBuf, &str)> = Vec::new();
+    for (option, path) in outs {
+        let place = place_of(&path);
+        if let Some((_, other)) = begun.iter().find(|(taken, _)| *taken == place) {
+            let both = if *other == option { format!("two {option}") } else { format!("{other} and {option}") };
+            let path = if is_standard(&path) { "standard output".into() } else { path.display().to_string() };
+            return Err(Failure::new(format!("{both} would write {path}; name another file for one of them")));
+        }
+        begun.push((place, option));
+    }
+    Ok(())
+}
+
+/// What a path stands for, however it is written.
+fn place_of(path: &Path) -> PathBuf {
+    // What cannot be written is refused by who begins it.
+    let target = target_of(path).unwrap_or_else(|_| path.to_path_buf());
+    if is_standard(&target) {
+        return target;
+    }
+    let beside = || Some(folder_of(&target).canonicalize().ok()?.join(target.file_name()?));
+    target.canonicalize().ok().or_else(beside).unwrap_or(target)
+}
+
+/// Gives all of them their names, or none of them if one cannot be written, something is in its way, or two have one name.
 pub fn publish(files: &[Written]) -> Outcome {
     let fail = |file: &Written, error: &io::Error| Failure::io(&file.path, error);
+    let mut places = HashSet::new();
+    if let Some(twice) = files.iter().find(|file| !places.insert(place_of(&file.target))) {
+        let path = twice.path.display();
+        return Err(Failure::new(format!(
+            "{path}: two outputs would be this file, so none is written; name one otherwise"
+        )));
+    }
     for file in files {
         file.prepare().map_err(|error| fail(file, &error))?;
     }
@@ -214,6 +248,7 @@ impl<F: Copy> Outs<F> {
             let path = path.display();
             return Err(Failure::new(format!("{path}: is read, so it cannot be written; choose another --out")));
         }
+        keep_apart(outs.iter().map(|(path, _)| ("--out", path.clone())))?;
         outs.iter().map(|(path, format)| Ok((WholeFile::create(path)?, *format))).collect::<Outcome<_>>().map(Self)
     }
 

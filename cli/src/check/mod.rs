@@ -55,7 +55,7 @@ pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The step in seconds that is judged, such as 0.001 or 1/60; by default what the scene says, 1/60 for .scn
-    #[arg(long, value_name = "S", value_parser = step)]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = step)]
     pub(crate) dt: Option<f64>,
     /// The method that is advised on, any that `run` knows; by default what the scene says, rk4 for .scn
     #[arg(long, value_name = "NAME")]

@@ -7,7 +7,7 @@ use super::workload::Workload;
 use crate::formats::{PointsFormat, StudyFormat, named};
 use crate::load::Reading;
 use crate::outcome::{Failure, Outcome};
-use crate::parse::{chosen, number, seconds, sorted, whole};
+use crate::parse::{chosen, natural, number, seconds, sorted, whole};
 use pointmass::index::Structure;
 use std::path::PathBuf;
 
@@ -25,14 +25,14 @@ pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// When a scene's particles are taken, in seconds; by default at the end of its duration
-    #[arg(long, value_name = "S", value_parser = seconds, requires = "scene")]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = seconds, requires = "scene")]
     pub(crate) at: Option<f64>,
     /// Made-up points, one or more; by default uniform
     #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
     pub(crate) distribution: Vec<Distribution>,
     /// How many points, such as 1e3,1e4; by default 1e3,1e4,1e5, or all that the file or the scene has, of which
     /// other numbers take a random subset
-    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = count)]
+    #[arg(long, value_name = "N,...", allow_negative_numbers = true, value_delimiter = ',', value_parser = count)]
     pub(crate) n: Vec<usize>,
     /// The triangles of a mesh, which segments are held against: .off, .obj, .stl, .ply, or the ink of a .png
     #[arg(long, value_name = "FILE", conflicts_with_all = ["points", "scene", "distribution", "surface", "triangles"])]
@@ -41,19 +41,19 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "NAME,...", value_enum, value_delimiter = ',')]
     pub(crate) surface: Vec<Made>,
     /// About how many triangles made-up meshes have, such as 1e4,1e5; by default 6e4
-    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = triangles)]
+    #[arg(long, value_name = "N,...", allow_negative_numbers = true, value_delimiter = ',', value_parser = triangles)]
     pub(crate) triangles: Vec<usize>,
     /// How many segments of every kind are held against a mesh; by default 20000
-    #[arg(long, value_name = "N", value_parser = segments)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = segments)]
     pub(crate) segments: Option<usize>,
     /// The radius of queries, in the points' unit; of a mesh that of the balls, by default a thousandth of its diagonal
-    #[arg(long, value_name = "R", value_parser = radius, conflicts_with = "neighbours")]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = radius, conflicts_with = "neighbours")]
     pub(crate) radius: Option<f32>,
     /// Choose the radius so that a point has so many others within it on average; by default 30
-    #[arg(long, value_name = "M", value_parser = neighbours)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = neighbours)]
     pub(crate) neighbours: Option<f64>,
     /// How many nearest others `nearest` looks for; by default 8
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=64))]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = clap::value_parser!(u8).range(1..=64))]
     pub(crate) k: Option<u8>,
     /// What is asked; building is always measured. By default all that points are asked, count,within,nearest,pairs,moving,
     /// or with a mesh ray, which stands alone
@@ -67,10 +67,10 @@ pub(crate) struct Compare {
     pub(crate) peers: bool,
     /// How many times everything is measured; by default as often as three seconds allow, from 7 to 31 times, or 3
     /// times where a round takes very long
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) repeat: Option<u32>,
     /// The seed of made-up points, subsets, segments and scenes; by default 1, or what the scene says
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = natural)]
     pub(crate) seed: Option<u64>,
     /// Write the comparison into FILE: .html, a page with charts; .svg, the charts; .csv or .json, all figures; may be
     /// given several times

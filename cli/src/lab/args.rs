@@ -30,10 +30,10 @@ pub(crate) struct Lab {
     pub(crate) integrators: Methods,
     /// The steps in seconds, such as 1/60,1/120,1/240; by default powers of two that suit the problem, or the scene's step
     /// and its half, down to a sixteenth
-    #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = step)]
+    #[arg(long, value_name = "S,...", allow_hyphen_values = true, value_delimiter = ',', value_parser = step)]
     pub(crate) dt: Vec<f64>,
     /// When errors are taken, in seconds; by default what suits the problem, or what the scene says
-    #[arg(long, value_name = "S", value_parser = span)]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = span)]
     pub(crate) duration: Option<f64>,
     /// Write the findings into FILE: .html, a page with charts; .svg, the charts; .csv or .json, all figures; may be
     /// given several times

@@ -1,6 +1,7 @@
 //! Arguments of `pointmass run`.
 
 use crate::formats::{EventsFormat, Line, RecordFormat, Said, events, recording};
+use crate::parse::{natural, positive};
 use crate::world::Settings;
 use std::path::PathBuf;
 
@@ -11,10 +12,10 @@ pub(crate) struct Run {
     #[command(flatten)]
     pub(crate) world: Settings,
     /// How many steps, instead of a duration
-    #[arg(long, value_name = "N", conflicts_with = "duration")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "duration", value_parser = natural)]
     pub(crate) steps: Option<u64>,
     /// Record every K-th step (step 0 and the last always)
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, default_value_t = 1, value_parser = positive)]
     pub(crate) every: u64,
     /// Record into FILE: .csv, .jsonl, .xyz, .npz, .glb or .gltf; or .npy, .ply, .obj or .vtp for one file a record, as
     /// every name with a place for a number has it, such as DIR/%04d.csv. Or into -, standard output, at the end; what

@@ -20,6 +20,7 @@ use summary::{Effort, Summary};
 
 /// Runs a scene as the arguments say. Files are written whole, at the end, or not at all.
 pub(crate) fn run(args: &Run) -> Outcome {
+    recordings::keep_apart(args)?;
     let mut world = World::load(&args.world)?;
     let schedule = match args.steps {
         Some(steps) => Schedule::steps_of(steps, world.dt),

@@ -3,10 +3,10 @@
 use super::args::Run;
 use crate::formats::{Line, RecordFormat};
 use crate::load::{Disk, name};
-use crate::outcome::{Failure, Outcome};
+use crate::outcome::Outcome;
 use crate::world::World;
 use pointmass_files::record::{Chronicle, Frame, Notes, Plan, Recorder};
-use pointmass_files::whole::{is_standard, publish};
+use pointmass_files::whole::{self, publish};
 use std::path::PathBuf;
 
 /// The recordings of a run, in the making. Dropped, they are gone.
@@ -17,12 +17,16 @@ pub(super) struct Recordings {
     chronicle: Option<Chronicle>,
 }
 
+/// Refuses recordings that would take each other's place.
+pub(super) fn keep_apart(args: &Run) -> Outcome {
+    let first = |(path, format): &(PathBuf, Option<RecordFormat>)| Recorder::first(path, format.unwrap_or(args.format));
+    let outs = args.out.iter().map(|out| ("--out", first(out)));
+    whole::keep_apart(outs.chain(args.events.iter().map(|(path, _)| ("--events", path.clone()))))
+}
+
 impl Recordings {
     /// Begins all of them.
     pub(super) fn create(args: &Run, world: &World) -> Outcome<Self> {
-        if args.out.iter().filter(|(path, _)| is_standard(path)).count() > 1 {
-            return Err(Failure::new("standard output takes one recording, not several: name files for the others"));
-        }
         let recorder = |(path, format): &(PathBuf, Option<RecordFormat>)| match format.unwrap_or(args.format) {
             RecordFormat::Jsonl if args.line == Line::Record => Recorder::create(path, RecordFormat::Frames),
             format => Recorder::create(path, format),

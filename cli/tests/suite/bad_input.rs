@@ -142,8 +142,8 @@ fn json_that_is_wrong() {
         ("   \n".into(), "a.json:"),
         ("{".into(), "a.json:1:1: "),
         ("{}}".into(), "a.json:1:3: "),
-        ("null".into(), "a.json:1:"),
-        ("7".into(), "a.json:1:"),
+        ("null".into(), "a.json:1:4: a scene is an object, not null"),
+        ("7".into(), "a.json:1:1: a scene is an object, not integer `7`"),
         ("\"a scene\"".into(), "a.json:1:"),
         ("particle_gravity 0 0 0".into(), "a.json:1:1: "),
         (r#"{"wind": 1}"#.into(), "a.json:1:7: unknown field `wind`"),
@@ -154,11 +154,27 @@ fn json_that_is_wrong() {
         (r#"{"particles": [{"mass": 1e39}]}"#.into(), "a.json:"),
         (r#"{"particles": [{"mass": 1e400}]}"#.into(), "a.json:"),
         (r#"{"particles": [{"mass": "1"}]}"#.into(), "a.json:1:"),
-        (r#"{"particles": [{}, {"mass": -1}]}"#.into(), "a.json:particles[1]: "),
-        (r#"{"particles": [{"mass": 0}]}"#.into(), "a.json:particles[0]: "),
-        (r#"{"particles": [{"mass": -1, "fixed": true}]}"#.into(), "a.json:particles[0]: "),
+        (
+            r#"{"particles": [{}, {"mass": -1}]}"#.into(),
+            "a.json:particles[1].mass: has to be above zero (3e-39 kg at least) unless",
+        ),
+        (
+            r#"{"particles": [{"mass": 0}]}"#.into(),
+            "a.json:particles[0].mass: has to be above zero (3e-39 kg at least) unless",
+        ),
+        (
+            r#"{"particles": [{"mass": 1e-39}]}"#.into(),
+            "a.json:particles[0].mass: has to be above zero (3e-39 kg at least) unless",
+        ),
+        (
+            r#"{"particles": [{"mass": -1, "fixed": true}]}"#.into(),
+            "a.json:particles[0].mass: has to be zero or more, not -1",
+        ),
         (r#"{"particles": [{"position": [1, 2]}]}"#.into(), "a.json:1:"),
-        (r#"{"particles": [{"position": [1, 2, 3, 4]}]}"#.into(), "a.json:1:"),
+        (
+            r#"{"particles": [{"position": [1, 2, 3, 4]}]}"#.into(),
+            "a.json:1:39: `position` takes a list of 3, and this one goes on",
+        ),
         (r#"{"particles": [{"fixed": 1}]}"#.into(), "a.json:1:"),
         (r#"{"particles": [{"material": 0}]}"#.into(), "a.json:particles[0].material: "),
         (
@@ -238,6 +254,14 @@ fn springs_fabrics_and_forces_that_are_wrong() {
         (cloth(&two, soft, r#"1, "breaks_at": 1"#), "a.json:cloths[0].breaks_at: has to be above one, a length over"),
         (cloth(&far, soft, "1"), "a.json:cloths[0].form: reaches beyond the range of a 32-bit float"),
         (cloth(&thin, soft, "1"), "a.json:cloths[0].form: its sides have to be longer than zero and not parallel"),
+        (
+            cloth(&sheet("[0, 4]"), soft, r#"0, "density": 1"#),
+            "a.json:cloths[0].form.sheet.cells: has to be 1 at least along both sides, not [0, 4]",
+        ),
+        (
+            cloth(&sheet("[4, 0]"), "", r#"1, "shell": {"stretch": [10, 10], "shear": 1}"#),
+            "a.json:cloths[0].form.sheet.cells: has to be 1 at least along both sides, not [4, 0]",
+        ),
         (cloth(&sheet("[1000000, 1000000]"), soft, "1"), "a.json:cloths[0].form: makes 1000002000001 particles; "),
         (cloth(&sheet("[8000, 8000]"), soft, "1"), "a.json:cloths[0].form: makes 64016001 particles; "),
         (cloth(&sheet("[4294967295, 4294967295]"), soft, "1"), "a.json:cloths[0].form: makes 18446744073709551615 "),
@@ -252,6 +276,33 @@ fn springs_fabrics_and_forces_that_are_wrong() {
         folder.write("a.json", &text);
         refused_by(&folder, "a.json", error, &["run", "render", "check"]);
     }
+    // A row of particles that somebody weighs is a cloth, if a narrow one.
+    folder.write("a.json", cloth(&sheet("[4, 0]"), soft, "1"));
+    assert_eq!(folder.report("a.json --steps 1")["live"], 5);
+}
+
+/// Of a list that is too long the field is told, wherever it stands, and how many it takes.
+#[test]
+fn lists_that_go_on_name_their_field() {
+    let rope = |ends: &str| {
+        format!(r#"{{"ropes": [{{"curve": [[0, 0, 0], [1, 0, 0]], "segments": 4, "weight": 1, "ends": {ends}}}]}}"#)
+    };
+    let sheet = r#""corner": [0, 0, 0], "sides": [[1, 0, 0], [0, 0, 1, 9]], "cells": [2, 2]"#;
+    for (text, field, count) in [
+        (rope(r#"[null, null, {"box": 0}]"#), "ends", 2),
+        (rope(r#"[null, {"rope": 1}, null]"#), "ends", 2),
+        (
+            format!(r#"{{"about": "\"ends\": [1, {{", "cloths": [{{"form": {{"sheet": {{{sheet}}}}}, "mass": 1}}]}}"#),
+            "sides",
+            3,
+        ),
+        ("{\"about\": \"ü\",\n \"springs\": [{\"ends\": [0, 1,\n 2]}]}".into(), "ends", 2),
+        (r#"{"background": [0, 0, 0, 1]}"#.into(), "background", 3),
+    ] {
+        let folder = Folder::with("a.json", &text);
+        let said = format!(": `{field}` takes a list of {count}, and this one goes on");
+        assert!(folder.run("run a.json").error().ends_with(&said), "{text}: {:?}", folder.run("run a.json"));
+    }
 }
 
 #[test]
@@ -260,10 +311,7 @@ fn balls_contacts_and_motion_that_are_wrong() {
     let contact = |contact: &str| ball(&format!(r#""materials": [{{"contact": {{{contact}}}}}]"#));
     let sphere = r#""shape": {"sphere": {"center": [9, 0, 0], "radius": 1}}"#;
     let cases = [
-        (
-            r#"{"particles": [{"radius": -0.1}]}"#.into(),
-            "a.json:particles[0]: its numbers have to be finite, its radius",
-        ),
+        (r#"{"particles": [{"radius": -0.1}]}"#.into(), "a.json:particles[0].radius: has to be zero or more, not -0.1"),
         (
             format!(r#"{{"emitters": [{{{sphere}, "radius": {{"mean": 1, "half_width": 2}}}}]}}"#),
             "a.json:emitters[0].radius: must not be below zero, the half_width counted in",

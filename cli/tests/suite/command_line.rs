@@ -103,6 +103,73 @@ fn usage_errors_exit_with_2() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
+/// A number below zero is a number: what is wrong about it is said by who knows what it should be.
+#[test]
+fn numbers_below_zero_are_told_what_is_allowed() {
+    let folder = Folder::with("a.scn", ONE);
+    let world = [
+        ("--duration -1", "expected seconds, from 0 to 2147483647"),
+        ("--duration -1/2", "expected seconds, from 0 to 2147483647"),
+        ("--dt -1", "expected seconds, from 0 to 2147483647"),
+        ("--dt -1/60", "expected seconds, from 0 to 2147483647"),
+        ("--seed -1", "expected a whole number from 0 to 18446744073709551615"),
+        ("--capacity -1", "-1 is not in 0..=500000000"),
+        ("--substeps -2", "expected a whole number from 1 to 1000000, or auto"),
+        ("--tolerance -1e-3", "expected metres, from 1e-30 to 1e30"),
+        ("--threads -1", "-1 is not in 1..=1024"),
+    ];
+    let run = [
+        ("--steps -1", "expected a whole number from 0 to 18446744073709551615"),
+        ("--every -1", "expected a whole number from 1 to 18446744073709551615"),
+    ];
+    let render = [
+        ("--size -1x5", "expected WIDTHxHEIGHT"),
+        ("--fps -1", "-1 is not in 1..=1000"),
+        ("--shutter -5e-1", "expected seconds, zero or more"),
+    ];
+    let others = [
+        ("check a.scn --dt -1", "expected seconds, from 0"),
+        ("lab a.scn --dt -1/60", "expected seconds, from 0"),
+        ("lab a.scn --duration -1", "expected seconds, from 0"),
+        ("compare --n -5", "expected a whole number of points, from 2"),
+        ("compare --seed -1", "expected a whole number from 0"),
+        ("compare --radius -1e-1", "expected a positive, finite radius"),
+        ("compare --neighbours -1", "expected a number from 0.001"),
+        ("compare --k -1", "-1 is not in 1..=64"),
+        ("compare --repeat -1", "-1 is not in 1..=10000"),
+        ("compare --scene a.scn --at -1", "expected seconds, from 0"),
+    ];
+    for (command, cases) in
+        [("run a.scn", [&world[..], &run].concat()), ("render a.scn --out o.gif", [&world[..], &render].concat())]
+    {
+        folder.misuse(command, &cases);
+    }
+    for (args, expected) in others {
+        folder.misuse(args, &[("", expected)]);
+    }
+    assert_eq!(folder.names(), ["a.scn"]);
+}
+
+/// What `--help` says of it: N steps each of which has the scene's own sub-steps.
+#[test]
+fn substeps_of_the_command_line_come_on_top_of_the_scenes() {
+    let scene = |substeps: u32| {
+        format!(
+            r#"{{"run": {{"substeps": {substeps}, "dt": 0.125, "duration": 1}}, "forces": [{{"gravity": {{"acceleration": [0, -9, 0]}}}}],
+            "particles": [{{"fixed": true}}, {{"position": [1, 0, 0]}}], "constraints": [{{"distance": {{"ends": [0, 1], "length": 1}}}}]}}"#
+        )
+    };
+    let folder = Folder::new();
+    for substeps in [1, 3] {
+        folder.write(&format!("{substeps}.json"), scene(substeps));
+    }
+    let both = folder.hash("3.json --substeps 4");
+    assert_eq!(folder.hash("3.json --dt 0.03125"), both);
+    assert_ne!(folder.hash("1.json --substeps 4"), both);
+    let help = folder.run("run --help").fine().stdout;
+    assert!(help.contains("run.substeps"), "{help}");
+}
+
 #[test]
 fn the_json_report_has_exactly_its_fields() {
     let folder = Folder::with("busy.scn", BUSY);
@@ -307,7 +374,8 @@ fn settings_come_from_the_file_unless_the_command_line_says_otherwise() {
     assert_eq!(report["integrator"], "euler");
     // A scene that begins with more particles than its capacity has room for them all.
     folder.write("b.json", r#"{"run":{"capacity":0},"particles":[{},{},{}]}"#);
-    assert_eq!(number(&folder.report("b.json --steps 1"), "live"), 3.0);
+    let answer = folder.run("run b.json --steps 1 --report json");
+    assert_eq!((number(&answer.report(), "live"), answer.warnings().len()), (3.0, 1), "{answer:?}");
 }
 
 #[test]

@@ -101,6 +101,50 @@ fn pipes_are_written_into() {
     assert!(folder.path("null.csv").is_symlink());
 }
 
+/// Two outputs are never one file, however their names are written: nothing is run, and what is there stays.
+#[test]
+fn outputs_are_kept_apart() {
+    let folder = Folder::with("a.scn", ONE);
+    for name in ["o.csv", "o_000000.ply", "sub/keep"] {
+        folder.write(name, "old");
+    }
+    symlink("o.csv", folder.path("link.csv")).expect("a link");
+    symlink("new.csv", folder.path("nowhere.csv")).expect("a link to what is not there yet");
+    symlink("sub", folder.path("under")).expect("a link to a folder");
+    let absolute = folder.path("o.csv").display().to_string();
+    let before = folder.names();
+    for (outs, said) in [
+        ("--out o.csv --events o.csv", "--out and --events would write o.csv"),
+        ("--events p.csv --out p.csv", "--out and --events would write p.csv"),
+        ("--out o.csv --out o.csv", "two --out would write o.csv"),
+        ("--out p.xyz --out q.xyz --out ./p.xyz", "two --out would write ./p.xyz"),
+        ("--out sub/../o.csv --events o.csv", "--out and --events would write o.csv"),
+        ("--out sub/p.csv --events under/p.csv", "--out and --events would write under/p.csv"),
+        ("--out o.csv --events link.csv", "--out and --events would write link.csv"),
+        ("--out nowhere.csv --events new.csv", "--out and --events would write new.csv"),
+        (&format!("--out {absolute} --events o.csv"), "--out and --events would write o.csv"),
+        ("--out o.ply --out o.ply", "two --out would write o_000000.ply"),
+        ("--out o.ply --out o_%06d.ply", "two --out would write o_000000.ply"),
+        ("--out p_%d.csv --events p_0.csv", "--out and --events would write p_0.csv"),
+        ("--out - --out -", "two --out would write standard output"),
+    ] {
+        // So many steps that it would be seen if they were made.
+        let answer = folder.run(&format!("run a.scn --duration 1e9 {outs}"));
+        assert!(answer.error().starts_with(said), "{outs}: {answer:?}");
+        assert_eq!((folder.names(), folder.read("o.csv")), (before.clone(), "old".into()), "{outs}");
+    }
+    for command in ["check a.scn --out p.svg --plot ./p.svg", "lab a.scn --out p.csv --out p.csv"] {
+        assert!(folder.run(command).error().starts_with("two --out would write"), "{command}");
+    }
+    // Which number they come to is known at the end.
+    let answer = folder.run("run a.scn --steps 20 --out q_%d.csv --events q_7.csv");
+    assert!(answer.error().starts_with("q_7.csv: two outputs would be this file, so none is written"), "{answer:?}");
+    assert_eq!(folder.names(), before);
+    // Files of one name in other folders, and of other formats, are others.
+    folder.run("run a.scn --steps 1 --out p.csv --events sub/p.csv --out p.xyz --out p.jsonl").fine();
+    assert!(folder.read("p.csv").starts_with("step,") && folder.read("sub/p.csv") != folder.read("p.csv"));
+}
+
 #[test]
 fn numbered_pictures_appear_all_or_none() {
     let folder = Folder::with("a.scn", ONE);

@@ -723,7 +723,7 @@ fn standard_output_takes_a_recording_and_standard_input_gives_a_scene() {
     assert_eq!(answer.code, 0, "{answer:?}");
     for (script, error) in [
         ("run a.scn --out - --format ply", "standard output: ply is one file a record; choose --format csv, jsonl"),
-        ("run a.scn --out - --out -", "standard output takes one recording"),
+        ("run a.scn --out - --out -", "two --out would write standard output"),
         ("run - < /dev/null 2>&1 && echo 'particle x' | $POINTMASS run -", "standard input:1"),
         ("run - --steps 1 < a.npz", "standard input:2: not a text: byte"),
     ] {

@@ -43,6 +43,26 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             "a.json:cloths[0].elasticity: 2 is above 1",
         ),
         (
+            r#"{"ropes": [{"curve": [[0, 0, 0], [1, 0, 0]], "segments": 2, "weight": 1, "elasticity": 1.5}]}"#.into(),
+            "a.json:ropes[0].elasticity: 1.5 is above 1",
+        ),
+        (
+            r#"{"strands": [{"form": {"curve": [[0, 0, 0], [0, 1, 0]]}, "segments": 2, "radius": 1e-3, "young": 1e6, "density": 1000,
+                "elasticity": -0.5}]}"#
+                .into(),
+            "a.json:strands[0].elasticity: -0.5 is below 0",
+        ),
+        (
+            r#"{"boxes": [{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0]},
+                {"sides": [1, 1, 1], "mass": 1, "position": [5, 0, 0], "elasticity": 2}]}"#
+                .into(),
+            "a.json:boxes[1].elasticity: 2 is above 1",
+        ),
+        (
+            r#"{"run": {"capacity": 2}, "particles": [{}, {}, {}]}"#.into(),
+            "a.json:run.capacity: 2 is less than the 3 particles that the scene begins with, which have room all the same",
+        ),
+        (
             r#"{"materials": [{"contact": {"friction": {"static": 0.1, "kinetic": 0.2}}}]}"#.into(),
             "a.json:materials[0].contact.friction.static: 0.1 is below kinetic, 0.2",
         ),
@@ -81,6 +101,40 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
         r#""elasticity": {"mean": 0.5, "half_width": 0.5}, "spread": {"uniform": 3.14159274}, "start": 1, "stop": 2"#;
     folder.write("a.json", emitter(fine));
     folder.run("run a.json --steps 2").fine();
+}
+
+/// Whatever it begins with, a scene is remarked on if its capacity is less than all of that, and only then.
+#[test]
+fn a_capacity_below_the_beginning_is_remarked_on() {
+    let sheet = r#"{"sheet": {"corner": [0, 0, 9], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [2, 3]}}"#;
+    let cloth = format!(r#""cloths": [{{"form": {sheet}, "mass": 1, "springs": {{"bend": {{"ks": 1}}}}}}]"#);
+    let grass = r#""on": {"shape": {"sphere": {"center": [0, 0, -9], "radius": 1}}, "count": 3, "length": 1}"#;
+    let folder = Folder::new();
+    for begin in [
+        r#""particles": [{}, {}, {}]"#,
+        &cloth,
+        r#""boxes": [{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0], "count": [1, 2, 1]}]"#,
+        &format!(
+            r#""strands": [{{"form": {{{grass}}}, "segments": 4, "radius": 1e-3, "young": 1e6, "density": 1000}}]"#
+        ),
+        r#""ropes": [{"curve": [[0, 0, 0], [1, 0, 0]], "segments": 5, "weight": 1}]"#,
+        r#""soft_bodies": [{"form": {"box": [1, 1, 1]}, "spacing": 0.5, "density": 100, "frequency": 5, "position": [0, 0, 0]}]"#,
+    ] {
+        folder.write("a.json", format!("{{{begin}}}"));
+        let live = folder.report("a.json --steps 0")["live"].as_u64().expect("a number");
+        for (capacity, is_odd) in [(live - 1, true), (live, false), (live + 1, false)] {
+            folder.write("a.json", format!(r#"{{"run": {{"capacity": {capacity}}}, {begin}}}"#));
+            let answer = folder.run("run a.json --steps 0 --report json");
+            let said = format!("a.json:run.capacity: {capacity} is less than the {live} particles that the scene");
+            assert_eq!(answer.report()["live"], live, "{begin}");
+            assert_eq!(
+                answer.warnings().iter().filter(|line| line.starts_with(&said)).count(),
+                usize::from(is_odd),
+                "{answer:?}"
+            );
+            assert_eq!(answer.warnings().len(), usize::from(is_odd), "{answer:?}");
+        }
+    }
 }
 
 #[test]

@@ -127,8 +127,8 @@ pub trait Force: Sync {
 
     /// Changes columns of a user's own if it [needs](Needs::write) to, once in each step of `dt` \[s\], when all have moved and
     /// been held against colliders and before anybody is taken out: what burns or cools. The state is that at the step's end; its
-    /// own columns of that kind are empty, as `custom` has them. Of several forces each sees what those before it have written. Where the
-    /// scene has no such columns nobody is asked.
+    /// own columns of that kind are empty, as `custom` has them. Who was [`born`](State::born) within the step has lived through a part of
+    /// it. Of several forces each sees what those before it have written. Where the scene has no such columns nobody is asked.
     fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
         let _ = (state, custom, dt);
     }

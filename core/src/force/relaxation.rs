@@ -7,7 +7,7 @@ use core::ops::Range;
 use glam::Vec3;
 
 /// Brings a column of a user's own toward a value, by a share of the difference in each second (Newton's law of cooling):
-/// c(t) = c∞ + (c(0) − c∞) e^(−λ t), at any step. It pushes nothing.
+/// c(t) = c∞ + (c(0) − c∞) e^(−λ t), at any step. The newborn begin at their births, wherever in a step these lie. It pushes nothing.
 ///
 /// Without such a column in the scene it does nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,9 +33,13 @@ impl<N: AsRef<str> + Sync> Force for Relaxation<N> {
         Needs { write: Some(Writing::COLUMNS), ..Needs::default() }
     }
 
-    fn write(&self, _: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
-        let left = exp(-self.rate * dt);
-        for value in custom.get_mut(self.column.as_ref()).into_iter().flatten() {
+    fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
+        let whole = exp(-self.rate * dt);
+        let values = custom.get_mut(self.column.as_ref()).into_iter().flatten();
+        for (value, &born) in values.zip(state.born) {
+            // Who is born within the step has lived through a part of it.
+            let age = (state.time - born).seconds();
+            let left = if age < dt { exp(-self.rate * age) } else { whole };
             *value = self.toward + (*value - self.toward) * left;
         }
     }

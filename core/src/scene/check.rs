@@ -9,6 +9,7 @@ use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::force::Spring;
 use crate::material::TrailMaterial;
 use crate::motion::{Motion, MotionBuf};
+use crate::particles::Particle;
 use crate::reap::ReaperKind;
 use crate::shape::Shape;
 use alloc::format;
@@ -28,10 +29,7 @@ impl SceneFile {
         self.check_run()?;
         for (i, particle) in self.particles.iter().enumerate() {
             let at = format!("particles[{i}]");
-            if !particle.is_sound() {
-                let message = "its numbers have to be finite, its radius not below zero, and its mass above zero (3e-39 kg at least) unless it is fixed";
-                return Err(SceneError::value(at, message));
-            }
+            check_particle(&at, particle)?;
             self.check_material(&at, particle.material)?;
         }
         if let Some((at, message)) = self.contacts.and_then(|response| response.fault()) {
@@ -271,6 +269,27 @@ impl SceneFile {
         finite("ambient", &self.ambient)?;
         finite("background", &self.background)
     }
+}
+
+/// Checks the numbers of a particle.
+fn check_particle(at: &str, particle: &Particle) -> Checked {
+    if particle.is_sound() {
+        return Ok(());
+    }
+    let Particle { position, velocity, radius, mass, fixed, drag, charge, elasticity, lifetime, .. } = *particle;
+    finite(&format!("{at}.position"), &position.to_array())?;
+    finite(&format!("{at}.velocity"), &velocity.to_array())?;
+    for (name, number) in [("drag", drag), ("charge", charge), ("elasticity", elasticity), ("lifetime", lifetime)] {
+        finite(&format!("{at}.{name}"), &[number])?;
+    }
+    zero_or_more(&format!("{at}.radius"), radius)?;
+    let of_mass = format!("{at}.mass");
+    if fixed {
+        return zero_or_more(&of_mass, mass);
+    }
+    finite(&of_mass, &[mass])?;
+    let message = format!("has to be above zero (3e-39 kg at least) unless the particle is `fixed`, not {mass}");
+    Err(SceneError::value(of_mass, message))
 }
 
 /// Checks the numbers that births vary by.

@@ -24,18 +24,7 @@ impl SceneFile {
         for (i, cloth) in self.cloths.iter().enumerate() {
             let at = format!("cloths[{i}]");
             let refuse = |field: &str, message: &str| Err(SceneError::value(format!("{at}.{field}"), message));
-            let ClothSprings { structural, shear, bend } = cloth.springs;
-            for (name, params) in [("structural", structural), ("shear", shear), ("bend", bend)] {
-                let Some(params) = params else { continue };
-                zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
-                zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
-            }
-            if !cloth.is_shell() && [structural, shear, bend].iter().all(Option::is_none) {
-                return refuse(
-                    "springs",
-                    "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell",
-                );
-            }
+            cloth.check_springs(&at)?;
             cloth.check_material(&at)?;
             finite(&format!("{at}.drag"), &[cloth.drag])?;
             finite(&format!("{at}.elasticity"), &[cloth.elasticity])?;
@@ -54,6 +43,12 @@ impl SceneFile {
             }
             if matches!(&cloth.form, Form::Sheet(sheet) if !(length(sheet.sides[0].cross(sheet.sides[1])) > 0.0)) {
                 return refuse("form", "its sides have to be longer than zero and not parallel: they span no area");
+            }
+            if let Some(cells) = cloth.cells().filter(|cells| cells.contains(&0) && cloth.needs_triangles()) {
+                let message = format!(
+                    "has to be 1 at least along both sides, not {cells:?}: without triangles there is nothing to weigh or to stretch"
+                );
+                return refuse("form.sheet.cells", &message);
             }
             let more = cloth.count().unwrap_or(0);
             count = count.saturating_add(more);
@@ -185,6 +180,20 @@ impl StrandAir {
 }
 
 impl Cloth {
+    fn check_springs(&self, at: &str) -> Checked {
+        let ClothSprings { structural, shear, bend } = self.springs;
+        for (name, params) in [("structural", structural), ("shear", shear), ("bend", bend)] {
+            let Some(params) = params else { continue };
+            zero_or_more(&format!("{at}.springs.{name}.ks"), params.ks)?;
+            zero_or_more(&format!("{at}.springs.{name}.kd"), params.kd)?;
+        }
+        if self.is_shell() || [structural, shear, bend].iter().any(Option::is_some) {
+            return Ok(());
+        }
+        let message = "has to name structural, shear or bend springs, such as {\"structural\": {\"ks\": 100}}, unless it is a shell";
+        Err(SceneError::value(format!("{at}.springs"), message))
+    }
+
     /// Checks what it weighs, what it is made of and the air around it.
     fn check_material(&self, at: &str) -> Result<(), SceneError> {
         self.check_weight(at)?;

@@ -243,6 +243,16 @@ impl Cloth {
         self.shell.is_some() || self.hung.is_some() || self.isotropic.is_some()
     }
 
+    /// Tells whether it is nothing without triangles: one that weighs by its area, or a shell.
+    pub(super) fn needs_triangles(&self) -> bool {
+        self.by_area().is_some() || self.is_shell()
+    }
+
+    /// The cells of a sheet along its sides.
+    pub(super) fn cells(&self) -> Option<[u32; 2]> {
+        if let Form::Sheet(sheet) = &self.form { Some(sheet.cells) } else { None }
+    }
+
     /// Its triangles, by its particles counted from 0.
     fn triangles(&self, mesh: Option<&MeshBuf>) -> Vec<[u32; 3]> {
         match (&self.form, mesh) {
@@ -329,11 +339,6 @@ impl Cloth {
 
     /// The particles of a sheet; those of a mesh are known once it is read.
     pub(super) fn count(&self) -> Option<u64> {
-        match &self.form {
-            Form::Sheet(sheet) => {
-                Some(sheet.cells.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n) + 1)))
-            }
-            Form::Mesh(_) => None,
-        }
+        Some(self.cells()?.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n) + 1)))
     }
 }

@@ -133,7 +133,7 @@ pub struct Run {
     pub max_bounces: u32,
     /// The seed of all randomness.
     pub seed: u64,
-    /// Particles alive at once.
+    /// Particles alive at once: births beyond it are refused and counted. What the scene begins with has room in any case.
     pub capacity: u32,
 }
 

@@ -1,6 +1,6 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::{Growth, Response, SceneFile};
+use super::{Boxes, Cloth, Cord, Growth, Response, Run, SceneFile, SoftBody, Tuft};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::Friction;
@@ -26,18 +26,12 @@ impl SceneFile {
             let told = remark.filter(|_| remarks.len() < MOST);
             remarks.extend(told.map(|text| format!("{at}: {text}")));
         };
-        // A fixed particle hits nothing.
-        for (i, particle) in self.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed) {
-            add(format_args!("particles[{i}].elasticity"), odd_elasticity(Varied::exactly(particle.elasticity)));
-        }
+        add(format_args!("run.capacity"), self.odd_capacity());
+        self.add_elasticities(&mut add);
         for (i, spring) in self.springs.iter().enumerate() {
             add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
         }
-        for (i, cloth) in self.cloths.iter().enumerate() {
-            add(format_args!("cloths[{i}].elasticity"), odd_elasticity(Varied::exactly(cloth.elasticity)));
-        }
         for (i, body) in self.soft_bodies.iter().enumerate() {
-            add(format_args!("soft_bodies[{i}].elasticity"), odd_elasticity(Varied::exactly(body.elasticity)));
             add(
                 format_args!("soft_bodies[{i}].radius"),
                 self.contacts.and_then(|contacts| body.overlap(contacts.contacts().is_some())),
@@ -62,6 +56,47 @@ impl SceneFile {
         }
         self.add_idle(&mut add);
         remarks
+    }
+
+    /// Remarks on the elasticity of what the scene begins with.
+    fn add_elasticities(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        let mut look = |list: &str, i: usize, elasticity: f32| {
+            add(format_args!("{list}[{i}].elasticity"), odd_elasticity(Varied::exactly(elasticity)));
+        };
+        // A fixed particle hits nothing.
+        let free = self.particles.iter().enumerate().filter(|(_, particle)| !particle.fixed);
+        free.for_each(|(i, particle)| look("particles", i, particle.elasticity));
+        self.cloths.iter().enumerate().for_each(|(i, cloth)| look("cloths", i, cloth.elasticity));
+        self.boxes.iter().enumerate().for_each(|(i, boxes)| look("boxes", i, boxes.elasticity));
+        self.strands.iter().enumerate().for_each(|(i, tuft)| look("strands", i, tuft.elasticity));
+        self.ropes.iter().enumerate().for_each(|(i, cord)| look("ropes", i, cord.elasticity));
+        self.soft_bodies.iter().enumerate().for_each(|(i, body)| look("soft_bodies", i, body.elasticity));
+    }
+
+    /// A remark on room for fewer than there are from the beginning. As many as are usual may not have been said at all.
+    fn odd_capacity(&self) -> Option<String> {
+        let (capacity, (least, is_all)) = (self.run.capacity, self.least_start());
+        if capacity == Run::default().capacity || u64::from(capacity) >= least {
+            return None;
+        }
+        let more = if is_all { "" } else { " and more" };
+        let message = format!(
+            "{capacity} is less than the {least} particles{more} that the scene begins with, which have room all the same; take no less"
+        );
+        Some(message)
+    }
+
+    /// The particles that it begins with, as far as they are known before meshes have been read, and whether those are all.
+    fn least_start(&self) -> (u64, bool) {
+        let cloths = self.cloths.iter().map(Cloth::count);
+        let bodies = self.soft_bodies.iter().map(SoftBody::particles);
+        let known = self.boxes.iter().map(Boxes::particles).chain(self.strands.iter().map(Tuft::particles));
+        let known = known.chain(self.ropes.iter().map(Cord::particles)).map(Some);
+        let own = (self.particles.len() as u64, true);
+        known
+            .chain(cloths)
+            .chain(bodies)
+            .fold(own, |(sum, is_all), more| (sum.saturating_add(more.unwrap_or(0)), is_all && more.is_some()))
     }
 
     /// Remarks on parts that do nothing.

@@ -65,6 +65,16 @@ impl Recorder {
         Ok(Self { path: path.to_path_buf(), sink })
     }
 
+    /// The first of the files that it would make.
+    #[must_use]
+    pub fn first(path: &Path, format: RecordFormat) -> PathBuf {
+        let pattern = Pattern::parse(path).ok().flatten();
+        if is_standard(path) || pattern.is_none() && format.holds_many() {
+            return path.to_path_buf();
+        }
+        path.with_file_name(pattern.unwrap_or_else(|| Pattern::numbered(path)).name(0))
+    }
+
     /// Takes a record.
     pub fn record(&mut self, frame: &Frame) -> Outcome {
         self.sink.record(frame).map_err(|error| Failure::io(&self.path, &error))

@@ -156,6 +156,43 @@ fn columns_fit_into_a_static_and_are_asked_for() {
     }
 }
 
+/// Whenever in a step somebody is born, what relaxes is what the closed form says at its age.
+#[test]
+fn the_newborn_relax_for_as_long_as_they_live() {
+    const RATE: f32 = 1.3;
+    let jet = Emitter { lifetime: Varied { mean: 1.5, half_width: 1.0 }, ..Emitter::new(point(Vec3::ZERO), 97.0) };
+    let custom = [Custom { start: &[50.0], newborn: 300.0, ..Custom::new("heat") }];
+    let cooling = Relaxation { column: "heat", toward: 20.0, rate: RATE };
+    for (fps, substeps) in [(24, 1), (24, 5), (60, 1), (60, 5), (240, 1), (240, 5)] {
+        let scene = Scene {
+            start: &[Particle::REST],
+            emitters: &jet,
+            forces: &(&cooling, Gravity::EARTH),
+            custom: &custom,
+            substeps,
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, 300, 3);
+        for step in 1..=2 * fps {
+            system.step(&scene, Time::frame(step.into(), fps) - system.time());
+            let (p, heat) = (system.particles(), system.custom(&scene).column(0));
+            for (row, &heat) in heat.iter().enumerate() {
+                let first = if p.serial[row] == 0 { 50.0 } else { 300.0 };
+                let age = (system.time() - p.born[row]).seconds_f64();
+                let exact = 20.0 + (first - 20.0) * (-f64::from(RATE) * age).exp();
+                // A step errs by some 4e-5 of roundings, and that fades within 1 / 1.3 s, which is 185 steps at the most. Who relaxed for half a step
+                // too long would be off by 0.75 at the least.
+                assert!(
+                    (f64::from(heat) - exact).abs() < 0.01,
+                    "{heat}, not {exact}, at {age} s in steps of 1/{fps} s"
+                );
+            }
+        }
+        let totals = system.totals();
+        assert!(totals.born > 180 && totals.died.lifetime > 30, "{totals:?}");
+    }
+}
+
 /// Keeps of each particle how often it has been asked for it and who that was, and altogether how often; wears a column
 /// of the scene's out.
 struct Wear;
