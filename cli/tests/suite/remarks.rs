@@ -35,6 +35,10 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
         (emitter(r#""spread": {"uniform": -1}"#), "a.json:emitters[0].spread: -1 rad is not from 0 to π"),
         (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
         (
+            r#"{"particles": [{"radius": 0.1, "mass": 1000}, {"radius": 0.1, "position": [1, 0, 0]}], "contacts": {"position": {}}}"#.into(),
+            "a.json:contacts.position: balls of 1000 kg weigh more than 50 times as much as those of 1 kg",
+        ),
+        (
             r#"{"particles": [{}, {}], "springs": [{"ends": [1, 1], "rest_length": 1, "ks": 1}]}"#.into(),
             "a.json:springs[0].ends: the spring joins particle 1 to itself",
         ),

@@ -19,10 +19,7 @@ impl SceneFile {
         serde_json::from_str(text).map_err(|error| {
             let message = error.to_string();
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what);
-            let found = message == "trailing characters";
-            let longer = || too_long(text, error.line(), error.column());
-            let message = found.then(longer).flatten().unwrap_or_else(|| plain(message));
-            SceneError::at(name, error.line(), error.column(), message)
+            SceneError::at(name, error.line(), error.column(), plain(message))
         })
     }
 
@@ -64,6 +61,9 @@ const FORMER: [(&str, &str); 7] = [
 
 /// The parser's message without the names of Rust's types.
 fn plain(message: &str) -> String {
+    if message == "trailing characters" {
+        return "this goes on where it has to end: the list before has all the entries that its field takes, or the scene is over".to_string();
+    }
     if message == "number out of range" {
         return "number out of range: the largest is 3.4e38".to_string();
     }
@@ -92,49 +92,6 @@ fn plain(message: &str) -> String {
         Some((what, name)) if name.chars().all(char::is_alphanumeric) => format!("{what}, expected an object"),
         _ => message.to_string(),
     }
-}
-
-/// What is wrong where a list goes on that has all its entries: the field that it belongs to, and how many it takes.
-fn too_long(text: &str, line: usize, column: usize) -> Option<String> {
-    let start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
-    let before = text.get(..start + column.checked_sub(1)?)?;
-    // Of each bracket that is open the commas behind it, if it is a list's, and the last name in front of it.
-    let mut open: Vec<(Option<usize>, &str)> = Vec::new();
-    let (mut name, mut rest) = ("", before);
-    while let Some(at) = rest.find(['"', '[', '{', ']', '}', ',']) {
-        let found = rest.as_bytes()[at];
-        rest = &rest[at + 1..];
-        match found {
-            b'"' => {
-                let end = end_of_string(rest)?;
-                let (word, after) = rest.split_at(end);
-                rest = &after[1..];
-                if rest.trim_start().starts_with(':') {
-                    name = word;
-                }
-            }
-            b'[' => open.push((Some(0), name)),
-            b'{' => open.push((None, name)),
-            b',' => {
-                if let Some((Some(commas), _)) = open.last_mut() {
-                    *commas += 1;
-                }
-            }
-            _ => name = open.pop()?.1,
-        }
-    }
-    let (commas, field) = *open.last()?;
-    commas.map(|count| format!("`{field}` takes a list of {count}, and this one goes on"))
-}
-
-/// Where a string ends whose beginning has been read.
-fn end_of_string(text: &str) -> Option<usize> {
-    let mut is_escaped = false;
-    text.bytes().position(|byte| {
-        let is_end = byte == b'"' && !is_escaped;
-        is_escaped = byte == b'\\' && !is_escaped;
-        is_end
-    })
 }
 
 /// Puts lists of plain numbers on one line: a vector is read as one thing.
