@@ -213,7 +213,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
                 return Arrival { position: path.x1, velocity, pending_death: PendingDeath::Lives };
             };
             if meeting.is_sink {
-                return meeting.arrival(&path);
+                let end = meeting.arrival(&path);
+                return Arrival { velocity: self.left.unwrap_or(end.velocity), ..end };
             }
             path = self.rebound(&path, &meeting);
         }
@@ -317,9 +318,10 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
         let Self { id, row, mass, .. } = *self;
         let (time, closing, after) = (during[0], max(-incoming, 0.0), along(plus(surface, slip), normal, outgoing));
-        let told = self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing]).unwrap_or([before, after]);
+        let left = self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing]);
         if let Some(observer) = &mut self.observer {
-            let [before, after] = told;
+            let closing = left.map_or(closing, |[before, _]| max(-dot(minus(before, surface), normal), 0.0));
+            let [before, after] = left.unwrap_or([before, after]);
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
@@ -347,7 +349,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
 
     /// Answers with a hit the velocity that constraints have left, if they have: says what it was and is. That of the way, which comes in and goes out
     /// so fast, is the mean of the sub-step; what forces have changed since presses on the surface, or is taken off the rebound, as they go on
-    /// after it. A push that has brought it there and left no such velocity is no blow.
+    /// after it. A push that has brought it there and left no such velocity is no blow: it cannot be told from a force that has acted away from the surface, which then
+    /// leaves a rebound somewhat too slow.
     fn answer_left(
         &mut self,
         hit: &Hit,
@@ -374,6 +377,9 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     #[inline(always)]
     fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing) -> Path {
         let Landing { beside, during, surface, ride, incoming, pressing, came, slip, after, .. } = landing;
+        if let (Some(left), Some(ride)) = (&mut self.left, &ride) {
+            *left = plus(*left, minus(ride.velocity[1], ride.velocity[0]));
+        }
         let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
         let drive = along(landing.drive, meeting.hit.normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: landing.friction }.after(rest);

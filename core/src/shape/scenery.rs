@@ -36,6 +36,8 @@ pub struct Scenery<C> {
     solids: Vec<Option<Solid>>,
     /// An index of them for all others; none, if there are few.
     index: IndexBuf,
+    /// True if any of them may move.
+    moves: bool,
 }
 
 /// Those things of many that are near a place.
@@ -76,7 +78,8 @@ impl<C: Collider> Scenery<C> {
         let ends: Vec<(u32, &Aabb)> = (0..).zip(&boxes.0).filter(|(_, bounds)| !is_endless(bounds)).collect();
         let clearance = ClearanceBuf::new(&ends, &all);
         let solids = things.iter().map(Collider::solid).collect();
-        Self { things, boxes, all, endless, cells, clearance, solids, index }
+        let moves = things.moves();
+        Self { things, boxes, all, endless, cells, clearance, solids, index, moves }
     }
 
     /// Finds those that a box may share a point with; false, if they may be too many.
@@ -202,7 +205,7 @@ impl<C: Collider> Many for Scenery<C> {
 
 impl<C: Collider> Collider for Nearby<'_, C> {
     fn moves(&self) -> bool {
-        self.of.moves()
+        self.of.moves
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
@@ -251,7 +254,7 @@ impl<C: Collider> Collider for Nearby<'_, C> {
 
 impl<C: Collider> Collider for Scenery<C> {
     fn moves(&self) -> bool {
-        self.things.moves()
+        self.moves
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {

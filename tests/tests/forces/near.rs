@@ -2,7 +2,7 @@
 
 use super::{cloud, forces};
 use pointmass::force::{Pair, Radial, RadialLaw, State, Weight};
-use pointmass::index::{IndexChoice, Neighbours, SpatialIndex, Structure};
+use pointmass::index::{IndexChoice, Nearby, Neighbours, SpatialIndex, Structure};
 use pointmass::{
     Coulomb, Custom, Effort, Emit, Emitter, Force, Gravity, Heap, LennardJones, Measures, Method, Particle, PowerLaw,
     Pressure, Scene, Size, System, Time, Varied, Vec3, Viscosity,
@@ -55,6 +55,35 @@ fn every_structure_gives_the_same_force() {
     }
     assert_eq!(SOFT.needs().columns(&Structure::Grid), Structure::Grid.columns());
     assert_eq!(SOFT.needs().columns(&()), 0);
+}
+
+/// One who is so far off that indices scale places down, or nowhere, makes nobody else a neighbour of others, and takes none away.
+#[test]
+fn who_is_far_off_changes_nobodys_neighbours() {
+    for far in [1e3, 1e17, 2e18, 1e19, 1e24, 1e30, 1e37, f32::INFINITY, f32::NAN] {
+        let mut places: Vec<_> = cloud(160).iter().map(|particle| particle.position).collect();
+        let about = |places: &[Vec3], structure: Option<Structure>| {
+            let mut lists: Vec<Vec<u32>> = vec![vec![]; places.len()];
+            let mut visit = |row: usize, others: &Nearby| lists[row].extend(others.rows());
+            match structure {
+                None => Neighbours::among(places).of(0..places.len(), 0.6, &mut visit),
+                Some(structure) => {
+                    let mut memory = vec![0; structure.words(places.len())];
+                    let mut index = structure.index(&mut memory);
+                    index.build(places, 0.6).expect("there is room");
+                    Neighbours::by(Some(&index), places).of(0..places.len(), 0.6, &mut visit);
+                }
+            }
+            lists
+        };
+        let without = about(&places, None);
+        places.push(Vec3::new(0.1, far, -0.2));
+        for structure in Structure::ALL.iter().map(|&structure| Some(structure)).chain([None]) {
+            let with = about(&places, structure);
+            assert!(with[..160] == without && with[160].is_empty(), "{far} m, {structure:?}");
+        }
+        assert!(without.iter().any(|list| list.len() > 3) && without.iter().any(|list| list.len() < 100));
+    }
 }
 
 /// A run of a scene by an index, with so many vectors a particle to work with; its hash after every tenth step, and its effort.

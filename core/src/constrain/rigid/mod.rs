@@ -74,7 +74,7 @@ use span::Span;
 /// and angular momentum are kept to rounding. Points are gone over until what is left to change is a hundredth of what forces change in a
 /// sub-step, a few times at the most.
 ///
-/// Bodies that lie still sleep: they stay where they are, at rest, and cost little. One falls asleep when for 5 √(r/a), r being half its size and
+/// Bodies that lie still sleep: they stay where they are, at rest, and cost little; where any scenery may move they look around in each sub-step. One falls asleep when for 5 √(r/a), r being half its size and
 /// a what forces accelerate it by, neither it nor any that it touches has gone farther than 4 % of its least half side; who is awake and lies
 /// still on one that sleeps finds it fixed. It wakes alone when what presses on it changes by half of that and of its weight, or one that moves
 /// comes to lie against it. A blow wakes those around as well: as many contacts away as it is times faster than what forces do in a step, and
@@ -222,14 +222,14 @@ fn meet_scenery(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>) 
             kept.bodies[pair.bodies[1] as usize].pressed = 1;
         }
     }
-    let slots = kept.scenery.chunks_exact_mut(DIRECTIONS);
+    let (slots, may_move) = (kept.scenery.chunks_exact_mut(DIRECTIONS), bodies.colliders.moves());
     for (number, (body, slots)) in kept.bodies[1..].iter_mut().zip(slots).enumerate() {
         let number = number + 1;
         if body.sleeps() {
             continue;
         }
         if body.moves() && (number < first || body.pressed != 0) {
-            scenery::meet(bodies, body, forms, number as u32, slots);
+            scenery::meet(bodies, body, forms, (number as u32, may_move), slots);
         } else {
             scenery::clear(body, slots);
         }

@@ -33,10 +33,16 @@ struct Visit<'a> {
 /// Its corners are asked for, as points: one that is beyond a surface, as seen from the body's middle, is met where the way there crosses it.
 /// Then the places of the scenery nearest to the body's middle, where they lie in it: edges and spheres smaller than it. A ball has no corners. Of
 /// several pieces each is looked at so by itself.
-pub(super) fn meet(bodies: &mut Bodies<'_>, body: &mut Body, forms: Forms<'_>, number: u32, slots: &mut [Manifold]) {
+pub(super) fn meet(
+    bodies: &mut Bodies<'_>,
+    body: &mut Body,
+    forms: Forms<'_>,
+    (number, may_move): (u32, bool),
+    slots: &mut [Manifold],
+) {
     let h = bodies.substep.seconds();
     let (way, small) = (body.speed() * h, body.small());
-    let is_new = bodies.substep.number == 0 || bodies.colliders.moves();
+    let is_new = bodies.substep.number == 0 || may_move;
     if !is_new && body.spare > way {
         body.spare -= way;
         return;
