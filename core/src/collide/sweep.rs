@@ -83,7 +83,7 @@ pub(super) struct Sweep<'a, C: ?Sized = dyn Collider + 'a> {
     pub(super) material: Option<u16>,
     /// The velocity that constraints have left it \[m/s\], if they have moved it: such goes straight to where they have put it, and hits answer this
     /// velocity beside that of the way, which it keeps where it meets nothing.
-    pub(super) left: Option<Vec3>,
+    pub(super) left: Option<&'a mut Vec3>,
     /// The step \[s\].
     pub(super) dt: f32,
     pub(super) report: &'a mut Report,
@@ -209,18 +209,22 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
         for _ in 0..self.obstacles.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
-                let velocity = self.left.unwrap_or(path.v1);
+                let velocity = self.left.as_deref().copied().unwrap_or(path.v1);
                 return Arrival { position: path.x1, velocity, pending_death: PendingDeath::Lives };
             };
             if meeting.is_sink {
                 let end = meeting.arrival(&path);
-                return Arrival { velocity: self.left.unwrap_or(end.velocity), ..end };
+                return Arrival { velocity: self.left.as_deref().copied().unwrap_or(end.velocity), ..end };
             }
             path = self.rebound(&path, &meeting);
         }
         self.report.caps.bounces += 1;
         let position = self.walls.carry(path.x0, self.radius, path.during);
-        Arrival { position, velocity: self.left.unwrap_or(path.v0), pending_death: PendingDeath::Lives }
+        Arrival {
+            position,
+            velocity: self.left.as_deref().copied().unwrap_or(path.v0),
+            pending_death: PendingDeath::Lives,
+        }
     }
 
     /// The first hit along the path's chords, at its instant on the path itself.
@@ -318,10 +322,11 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
         let Self { id, row, mass, .. } = *self;
         let (time, closing, after) = (during[0], max(-incoming, 0.0), along(plus(surface, slip), normal, outgoing));
-        let left = self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing]);
+        let mut told = [before, after];
+        self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing], &mut told);
         if let Some(observer) = &mut self.observer {
-            let closing = left.map_or(closing, |[before, _]| max(-dot(minus(before, surface), normal), 0.0));
-            let [before, after] = left.unwrap_or([before, after]);
+            let [before, after] = told;
+            let closing = if self.left.is_some() { max(-dot(minus(before, surface), normal), 0.0) } else { closing };
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
@@ -347,19 +352,21 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         self.stay(path, meeting, &lead, landing)
     }
 
-    /// Answers with a hit the velocity that constraints have left, if they have: says what it was and is. That of the way, which comes in and goes out
+    /// Answers with a hit the velocity that constraints have left, if they have: tells what it was and is. That of the way, which comes in and goes out
     /// so fast, is the mean of the sub-step; what forces have changed since presses on the surface, or is taken off the rebound, as they go on
     /// after it. A push that has brought it there and left no such velocity is no blow: it cannot be told from a force that has acted away from the surface, which then
     /// leaves a rebound somewhat too slow.
+    #[cfg_attr(one_by_one, inline(never))]
     fn answer_left(
         &mut self,
         hit: &Hit,
         mixed: &Mixed,
         surface: Vec3,
         [incoming, outgoing]: [f32; 2],
-    ) -> Option<[Vec3; 2]> {
-        let left = self.left.as_mut()?;
-        let relative = minus(*left, surface);
+        told: &mut [Vec3; 2],
+    ) {
+        let Some(left) = &mut self.left else { return };
+        let relative = minus(**left, surface);
         let closing = dot(relative, hit.normal);
         let since = closing - incoming;
         let leaving = match () {
@@ -369,8 +376,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         };
         let came = along(relative, hit.normal, -closing);
         let slip = plus(came, mixed.friction.answer(came, leaving - closing));
-        let before = core::mem::replace(left, along(plus(surface, slip), hit.normal, leaving));
-        Some([before, *left])
+        let after = along(plus(surface, slip), hit.normal, leaving);
+        *told = [core::mem::replace(*left, after), after];
     }
 
     /// The way on of a particle that a hit brings to rest on a surface: along that and with it, for the time that is left.
@@ -378,7 +385,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing) -> Path {
         let Landing { beside, during, surface, ride, incoming, pressing, came, slip, after, .. } = landing;
         if let (Some(left), Some(ride)) = (&mut self.left, &ride) {
-            *left = plus(*left, minus(ride.velocity[1], ride.velocity[0]));
+            **left = plus(**left, minus(ride.velocity[1], ride.velocity[0]));
         }
         let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
         let drive = along(landing.drive, meeting.hit.normal, pressing);

@@ -93,10 +93,8 @@ impl TileSweep<'_, '_> {
         let mark = if row < old { self.past.marks.get(row).copied().unwrap_or(0) & DONE } else { 0 };
         // What constraints have moved goes straight. What they keep from what it touches is only kept from passing: half of it
         // may not touch anything.
-        let (path, left) = match mark & SHIFTED {
-            0 => (path, None),
-            _ => (path.straightened(), Some(path.v1)),
-        };
+        let (mut left, is_shifted) = (path.v1, mark & SHIFTED != 0);
+        let path = if is_shifted { path.straightened() } else { path };
         let radius = if mark & TOUCHING != 0 { 0.5 * radius } else { radius };
         if !path.is_finite() {
             return;
@@ -110,7 +108,8 @@ impl TileSweep<'_, '_> {
         let may_lie = row < old && mark == 0 && sinks.is_none_or(|sinks| !sinks.may_touch(&path.hull(radius)));
         // Who is born where a sub-step ends is let go in that.
         let is_newborn = row >= old && born > now;
-        let sweep = Sweep { left, ..self.sweep(row, radius, walls, sinks) };
+        let mut sweep = self.sweep(row, radius, walls, sinks);
+        sweep.left = is_shifted.then_some(&mut left);
         // Whoever is near one face alone goes the short way, among however many things.
         let facing = match known {
             None if SHORT_WAY => facing(walls, &path, [radius, sweep.elasticity], sweep.dt),
