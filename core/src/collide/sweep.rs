@@ -334,7 +334,6 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             self.lead_on(&lead, &mut onward, None);
             return onward;
         }
-        let friction = mixed.friction;
         let landing = Landing {
             beside,
             during,
@@ -347,7 +346,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             after,
             drive,
             acceleration,
-            friction,
+            friction: mixed.friction,
         };
         self.stay(path, meeting, &lead, landing)
     }
