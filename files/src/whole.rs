@@ -153,7 +153,7 @@ impl Series {
 /// Refuses to begin files of which two would be one, each given with the option that asks for it: the later would take the place of the earlier.
 pub fn keep_apart<'a>(outs: impl IntoIterator<Item = (&'a str, PathBuf)>) -> Outcome {
     let mut begun: Vec<(PathBuf, &str)> = Vec::new();
-    for (option, path) in outs.into_iter().filter(|(_, path)| !takes_all(path)) {
+    for (option, path) in outs {
         let place = place_of(&path);
         if let Some((_, other)) = begun.iter().find(|(taken, _)| *taken == place) {
             let both = if *other == option { format!("two {option}") } else { format!("{other} and {option}") };
@@ -165,12 +165,7 @@ pub fn keep_apart<'a>(outs: impl IntoIterator<Item = (&'a str, PathBuf)>) -> Out
     Ok(())
 }
 
-/// Tells whether a path is neither a file nor one to come, as /dev/null is not: it takes what all write.
-fn takes_all(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
-}
-
-/// What a path stands for, however it is written.
+/// The place that a path stands for, however it is written.
 fn place_of(path: &Path) -> PathBuf {
     // What cannot be written is refused by who begins it.
     let target = target_of(path).unwrap_or_else(|_| path.to_path_buf());
@@ -185,8 +180,7 @@ fn place_of(path: &Path) -> PathBuf {
 pub fn publish(files: &[Written]) -> Outcome {
     let fail = |file: &Written, error: &io::Error| Failure::io(&file.path, error);
     let mut places = HashSet::new();
-    let is_twice = |file: &&Written| !takes_all(&file.target) && !places.insert(place_of(&file.target));
-    if let Some(twice) = files.iter().find(is_twice) {
+    if let Some(twice) = files.iter().find(|file| !places.insert(place_of(&file.target))) {
         let path = twice.path.display();
         return Err(Failure::new(format!(
             "{path}: two outputs would be this file, so none is written; name one otherwise"

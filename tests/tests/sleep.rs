@@ -271,7 +271,7 @@ fn a_wall_that_comes_takes_along_who_lies_still() {
     }
 }
 
-/// What a floor does within a step, it does to who lies on it within a sub-step: it drops from under him, and he falls; it swings, and he stays on it.
+/// A floor that moves within a step does so to who lies on it within a sub-step: he stays on one that swings, at its turning points too.
 #[test]
 fn a_floor_that_moves_is_felt_in_sub_steps() {
     for (rate, substeps) in [(24u32, 20u32), (60, 8), (240, 2)] {

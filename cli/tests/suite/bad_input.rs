@@ -281,7 +281,7 @@ fn springs_fabrics_and_forces_that_are_wrong() {
     assert_eq!(folder.report("a.json --steps 1")["live"], 5);
 }
 
-/// Of a list that is too long the field is told, wherever it stands, and how many it takes.
+/// A list that is too long is refused where it goes on, and so is what comes after a scene.
 #[test]
 fn lists_that_go_on_are_refused_where_they_do() {
     for (text, place) in [

@@ -150,7 +150,7 @@ fn numbers_below_zero_are_told_what_is_allowed() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// What `--help` says of it: N steps each of which has the scene's own sub-steps.
+/// A step is divided into N as `--help` says: each of these has the scene's own sub-steps.
 #[test]
 fn substeps_of_the_command_line_come_on_top_of_the_scenes() {
     let scene = |substeps: u32| {

@@ -209,22 +209,23 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
         for _ in 0..self.obstacles.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
-                let velocity = self.left.as_deref().copied().unwrap_or(path.v1);
-                return Arrival { position: path.x1, velocity, pending_death: PendingDeath::Lives };
+                let (position, velocity) = (path.x1, self.left_or(path.v1));
+                return Arrival { position, velocity, pending_death: PendingDeath::Lives };
             };
             if meeting.is_sink {
                 let end = meeting.arrival(&path);
-                return Arrival { velocity: self.left.as_deref().copied().unwrap_or(end.velocity), ..end };
+                return Arrival { velocity: self.left_or(end.velocity), ..end };
             }
             path = self.rebound(&path, &meeting);
         }
         self.report.caps.bounces += 1;
         let position = self.walls.carry(path.x0, self.radius, path.during);
-        Arrival {
-            position,
-            velocity: self.left.as_deref().copied().unwrap_or(path.v0),
-            pending_death: PendingDeath::Lives,
-        }
+        Arrival { position, velocity: self.left_or(path.v0), pending_death: PendingDeath::Lives }
+    }
+
+    /// The velocity that constraints have left it, after all hits; that of its path, if they have not moved it.
+    fn left_or(&self, of_path: Vec3) -> Vec3 {
+        self.left.as_deref().copied().unwrap_or(of_path)
     }
 
     /// The first hit along the path's chords, at its instant on the path itself.

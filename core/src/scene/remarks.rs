@@ -17,7 +17,7 @@ const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
 /// As many as are told: a large file may have one in every line.
 pub(super) const MOST: usize = 1000;
 
-/// How many times as heavy as others balls may be that these bear in the sub-steps that contacts by position usually take: two and three on top of
+/// Balls may be so many times as heavy as others that bear them in the sub-steps that contacts by position usually take: two and three on top of
 /// each other of which the upper one weighs 40 times as much lie still, with 100 times in steps of 1/24 s they do not.
 const UNEVEN: f32 = 50.0;
 
