@@ -300,10 +300,7 @@ impl Observer for Ledger<'_> {
                 let change = self.change(state);
                 self.books.emission += change;
             }
-            Phase::Snap => {
-                let change = self.change(state);
-                self.books.breaking += change;
-            }
+            Phase::Snap => self.books.breaking += self.change(state),
             Phase::Collide => {
                 let (change, struck) = (self.change(state), core::mem::take(&mut self.struck));
                 let [restitution, friction, scenery] = struck;
@@ -313,10 +310,8 @@ impl Observer for Ledger<'_> {
                 self.books.remainder += change - restitution - friction - scenery;
                 self.go_on(state);
             }
-            Phase::Delete => {
-                let change = self.change(state);
-                self.books.deletion += change;
-            }
+            Phase::Age => self.books.emission += self.change(state),
+            Phase::Delete => self.books.deletion += self.change(state),
         }
         self.books.closing = self.energy;
     }

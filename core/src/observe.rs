@@ -210,6 +210,8 @@ pub enum Phase {
     Snap,
     /// All have been held against colliders and sinks, at a sub-step's end.
     Collide,
+    /// All have the drags and masses of the step's end, where materials change these over lives.
+    Age,
     /// Those whose time has come are gone.
     Delete,
 }

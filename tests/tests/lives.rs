@@ -8,6 +8,7 @@ use pointmass::{
     Vec3,
 };
 use pointmass_tests::{often, point, started};
+use std::cmp::min;
 
 const PLAIN: Material<'static> = Material::of(ContactMaterial { elasticity: None, friction: None });
 
@@ -112,6 +113,37 @@ fn what_is_buoyant_rises_as_its_equation_says_by_every_method() {
             };
             assert!((at - x).length() < order && (speed - v).length() < order, "{} {at} {speed}", method.name());
         }
+    }
+}
+
+/// What is read is of the instant that the system has reached, however long its steps are and from the start on; the books have no other energy.
+#[test]
+fn drag_and_mass_are_those_of_the_instant() {
+    let (heavier, slower) = ([[0.0, 0.5], [0.25, 2.0], [1.0, 1.0]], [[0.0, 3.0], [1.0, 0.0]]);
+    let materials = of(Life { mass: plain(&heavier), drag: plain(&slower), ..Life::default() });
+    let at = |share: f32| {
+        let mass = if share < 0.25 { 0.5 + 6.0 * share } else { 2.0 - (share - 0.25) / 0.75 };
+        [4.0 * mass, 0.1 * (3.0 - 3.0 * share)]
+    };
+    let velocity = Vec3::new(3.0, 0.0, 0.0);
+    let start = [Particle { velocity, mass: 4.0, drag: 0.1, ..MORTAL }];
+    for (steps, substeps) in [(1, 1), (3, 1), (7, 3), (100, 2)] {
+        let scene = Scene { start: &start, materials: &materials, substeps, ..Scene::EMPTY };
+        let mut system = started(&scene, 1, 1);
+        let mut ledger = Ledger::new(&system, &scene);
+        for step in 0..=steps {
+            let [mass, drag] = at(step as f32 / steps as f32 * 0.9);
+            let (is, told) = (system.particles(), format!("step {step} of {steps}"));
+            assert!((is.mass[0] - mass).abs() < 1e-5 && (is.drag[0] - drag).abs() < 1e-6, "{told}: {}", is.mass[0]);
+            assert!((is.inverse_mass[0] * is.mass[0] - 1.0).abs() < 1e-6, "{told}");
+            let energy = 0.5 * f64::from(mass) * f64::from(velocity.length_squared());
+            assert!((ledger.books().closing - energy).abs() < 1e-4, "{told}: {:?}", ledger.books());
+            let next = Time::from_seconds(3.6).part(min(step + 1, steps), steps);
+            system.step_to_observed(&scene, next, &mut ledger);
+        }
+        let books = ledger.books();
+        let rest = [books.deletion, books.outside, books.remainder];
+        assert!(rest.iter().all(|rest| rest.abs() < 1e-3), "{steps} steps: {books:?}");
     }
 }
 

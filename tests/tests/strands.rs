@@ -99,6 +99,38 @@ fn a_cantilever_sags_as_beam_theory_has_it() {
     }
 }
 
+/// What gravity moves across an edge in a sub-step stretches nothing, though it is a jerk to damping that acts over many sub-steps.
+#[test]
+fn damping_over_many_substeps_does_not_hold_a_cantilever() {
+    let mut methods = Method::ALL.iter().cycle();
+    let mut random = Random::new(5);
+    for (edges, long, fall) in [(20u32, 3e-3f32, 0.18f32), (9, 0.2, 0.03), (33, 0.05, 0.1), (14, 2.0, 0.1)] {
+        for lag in [0.5f32, 6.0, 60.0] {
+            let [along, down] = pose(&mut random);
+            let rod = Rod { root: random.vector(long), along, long, edges };
+            let method = *methods.next().expect("there is always a next one");
+            // A round wire of 1/150 of its length; in a sub-step one falls by a share of an edge.
+            let (substeps, density, sag) = (10, 1e-3f32, 0.015 * long);
+            let h = (fall * rod.edge() / G).sqrt();
+            let bending = density * G * long.powi(4) / (8.0 * sag);
+            let stretch = 4.0 * bending / (long / 150.0).powi(2);
+            let start = rod.clamped(density);
+            let tuft = strand(&start, even(stretch, bending, bending, lag * h));
+            let gravity = Gravity { acceleration: down * G };
+            let integrator = method.integrator();
+            let scene =
+                Scene { start: &start, forces: &gravity, constraints: &tuft, substeps, integrator, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            // Its slowest swing lasts 5 √(sag / g); what is damped more than critically takes as long as its stresses.
+            let seconds = 10.0 * (lag * h) + 20.0 * (sag / G).sqrt() + 40.0 * (sag / G) / (lag * h);
+            let frame = h * substeps as f32;
+            run(&mut system, &scene, f64::from(frame), (seconds / frame) as u32 + 1);
+            let has = (system.particles().position[start.len() - 1] - rod.root - along * long).dot(down);
+            assert!((has / sag - 1.0).abs() < 0.02, "{method}, {edges} edges of {long} m, {lag}: {}", has / sag);
+        }
+    }
+}
+
 #[test]
 fn a_load_at_the_tip_bends_a_cantilever_by_its_third_power() {
     let rod = |edges| Rod { root: Vec3::ONE, along: Vec3::NEG_X, long: 0.5, edges };

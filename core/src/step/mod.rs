@@ -1,4 +1,4 @@
-//! The step: create, age, in each sub-step advance, snap and collide, reap. Each is a file, but collisions, which are a folder beside this one.
+//! The step: create, age, in each sub-step advance, snap and collide, age, reap. Each is a file, but collisions, which are a folder beside this one.
 
 mod advance;
 mod age;
@@ -45,6 +45,7 @@ impl Workspace<'_> {
         } else {
             self.phase_by_phase(scene, layout, span, old, report, observer);
         }
+        self.come_of_age(scene, layout, observer);
         let has_custom = scene.custom.count() > 0;
         if has_custom {
             self.let_forces_write(scene, layout, span, report);

@@ -33,6 +33,7 @@ impl Workspace<'_> {
         }
         self.status.start = self.status.taken;
         self.give_custom(scene.custom, layout, 0);
+        self.age(scene, layout, [Time::ZERO; 2]);
         self.memory.last_spring.own().fill(0);
         // Entries beyond the lists count in the fingerprint: an earlier scene's broken springs must not.
         self.memory.incident.fill(0);

@@ -3,6 +3,7 @@
 use crate::lanes::widest;
 use crate::memory::take;
 use bytemuck::Pod;
+use glam::Vec3;
 
 /// How many numbers to either side of the diagonal are not zero.
 pub(super) const REACH: usize = 14;
@@ -76,6 +77,11 @@ where
         self.right.get(row).and_then(|right| right.get(lane)).copied().unwrap_or(0.0)
     }
 
+    /// Three numbers of the solution, from this one on.
+    pub(super) fn vector(&self, lane: usize, row: usize) -> Vec3 {
+        Vec3::new(self.answer(lane, row), self.answer(lane, row + 1), self.answer(lane, row + 2))
+    }
+
     /// Solves all of them: L D Lᵀ, column by column, with the right side, and back.
     pub(super) fn solve(&mut self) {
         let Self { entries, right, count } = self;
@@ -86,17 +92,47 @@ where
                 for first in 0..count {
                     eliminate(&mut entries[first * COLUMN..], &mut right[first..]);
                 }
-                for first in (0..count).rev() {
-                    let column: &[[f32; LANES]] = &entries[first * COLUMN..][..COLUMN];
-                    let (own, below) = right[first..].split_at_mut(1);
-                    for (factor, known) in column[1..].iter().zip(&*below) {
-                        for ((own, factor), known) in own[0].iter_mut().zip(factor).zip(known) {
-                            *own -= factor * known;
-                        }
-                    }
-                }
+                substitute(entries, right, count);
             },
         );
+    }
+
+    /// Solves them for another right side, once they have been solved.
+    pub(super) fn solve_again(&mut self) {
+        let Self { entries, right, count } = self;
+        let count = *count;
+        widest(
+            #[inline(always)]
+            || {
+                for first in 0..count {
+                    let column: &[[f32; LANES]] = &entries[first * COLUMN..][..COLUMN];
+                    let (own, below) = right[first..].split_at_mut(1);
+                    for (factor, below) in column[1..].iter().zip(below) {
+                        for lane in 0..LANES {
+                            below[lane] -= factor[lane] * own[0][lane];
+                        }
+                    }
+                    for lane in 0..LANES {
+                        own[0][lane] *= 1.0 / column[0][lane];
+                    }
+                }
+                substitute(entries, right, count);
+            },
+        );
+    }
+}
+
+/// Goes from the last equation back to the first, with what is known by then.
+#[inline(always)]
+fn substitute<const LANES: usize>(entries: &[[f32; LANES]], right: &mut [[f32; LANES]], count: usize) {
+    for first in (0..count).rev() {
+        let column: &[[f32; LANES]] = &entries[first * COLUMN..][..COLUMN];
+        let (own, below) = right[first..].split_at_mut(1);
+        for (factor, known) in column[1..].iter().zip(&*below) {
+            for ((own, factor), known) in own[0].iter_mut().zip(factor).zip(known) {
+                *own -= factor * known;
+            }
+        }
     }
 }
 

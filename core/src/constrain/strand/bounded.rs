@@ -59,15 +59,13 @@ pub(super) struct Bounded<'a> {
 pub(super) struct Course<'m> {
     pub(super) joints: &'m mut [Joint],
     /// The frames of its edges as the sub-step began.
-    pub(super) before: &'m mut [[f32; 4]],
+    pub(super) before: &'m [[f32; 4]],
     pub(super) work: &'m mut [u32],
 }
 
 impl Bounded<'_> {
     /// What solving it must not change.
-    pub(super) fn limits(&self, bodies: &Bodies<'_>, course: Course<'_>, purse: &Purse<'_>) -> Limits {
-        let Course { joints, before, .. } = course;
-        before.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
+    pub(super) fn limits(&self, bodies: &Bodies<'_>, joints: &[Joint], purse: &Purse<'_>) -> Limits {
         let begun = Group::begun(bodies, self.rows).moving() + self.stored(joints, None, bodies.before[0]);
         Limits { most: purse.budget.most(begun), whole: Group::of(bodies, self.rows).whole() }
     }
@@ -87,7 +85,7 @@ impl Bounded<'_> {
         };
         let mut now = energy(bodies, joints);
         if now > most {
-            let frames = |turned: Option<Turn>| turned.map(|turned| (turned, &*before));
+            let frames = |turned: Option<Turn>| turned.map(|turned| (turned, before));
             let goal: &mut [Vec3] = bytemuck::cast_slice_mut(&mut work[..WORDS * self.rows.len()]);
             let mut free = Free { bodies, rows: self.rows, due, goal };
             let turned = free.hold_back(most, |places, turned| self.stored(joints, frames(turned), places));

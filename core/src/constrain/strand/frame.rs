@@ -10,12 +10,12 @@ const COSINE: f32 = 0.5;
 /// An edge in a sub-step.
 #[derive(Clone, Copy)]
 pub(super) struct Edge {
-    /// How long it is, how long it is along the direction in which forces act, and how long it was \[m\].
-    pub(super) length: [f32; 3],
+    /// How long it is along the direction in which forces act \[m\].
+    pub(super) length: f32,
     /// The direction in which forces act: that of the sub-step's beginning, as far as the method has not gone beyond it.
     pub(super) along: Vec3,
-    /// Its frame now, in that direction, and as the sub-step began; the third axis is along the edge.
-    pub(super) frame: [Turn; 3],
+    /// Its frame now, and in that direction; the third axis is along the edge.
+    pub(super) frame: [Turn; 2],
     /// True if both its ends are fixed: it is embedded, and what joins it is clamped.
     pub(super) embedded: bool,
 }
@@ -29,13 +29,12 @@ impl Edge {
             (far > 0.0 && far < f32::INFINITY).then(|| (way / far, far))
         };
         let (to, far) = direction(now)?;
-        let (from, earlier) = direction(before).unwrap_or((to, far));
+        let (from, _) = direction(before).unwrap_or((to, far));
         // What turns farther, or had no direction, is pulled along where it is.
-        let (along, middle) = direction(back).filter(|&(back, _)| dot(back, to) > COSINE).unwrap_or((to, far));
-        let first = bring(kept, from);
-        let second = bring(first, along);
-        let second = spun.map_or(second, |spin| spin.about(along).after(second));
-        Some(Self { length: [far, middle, earlier], along, frame: [bring(second, to), second, first], embedded })
+        let (along, length) = direction(back).filter(|&(back, _)| dot(back, to) > COSINE).unwrap_or((to, far));
+        let frame = bring(bring(kept, from), along);
+        let frame = spun.map_or(frame, |spin| spin.about(along).after(frame));
+        Some(Self { length, along, frame: [bring(frame, to), frame], embedded })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Strands that stretch, bend and twist by the numbers of their material: hair, wires, cables, stalks.
 
+mod asks;
 mod band;
 mod bounded;
 mod frame;
@@ -30,7 +31,7 @@ use bytemuck::Pod;
 use frame::{bring, frame, strain};
 use glam::Vec3;
 use joint::{Joint, KEPT};
-use piece::{EQUATIONS, Piece, Step, Writer, act};
+use piece::{EQUATIONS, Piece, Step, TURN, Writer, act};
 
 /// Elastic strands, in the shape in which they begin at rest: straight ones, and curls.
 ///
@@ -103,6 +104,13 @@ pub struct Strands<P, L> {
     #[cfg_attr(feature = "serde", serde(default))]
     pub turning: [f32; 2],
 }
+
+/// How much shorter a second step of Newton's method has to be than the first to be taken: one that is longer leads nowhere (Deuflhard, "Newton Methods
+/// for Nonlinear Problems", 2004, section 2.1).
+const CLOSER: f32 = 0.5;
+/// How far the first step may move a point against the next one, as a share of how far these are apart, and turn an edge about itself \[rad\]: the second
+/// one has the first one's directions.
+const LITTLE: f32 = 0.5;
 
 /// Strands that are solved at once, where there are several.
 const WIDE: usize = if BLOCKS { 8 } else { 1 };
@@ -253,7 +261,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     fn solve_some<const LANES: usize>(
         &self,
         bodies: &mut Bodies<'_>,
-        (joints, purses): (&mut [Joint], &mut [u32]),
+        (all, purses): (&mut [Joint], &mut [u32]),
         pieces: &[Piece],
         [rows, memory]: [&mut [u32]; 2],
         longest: usize,
@@ -265,35 +273,69 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         let mut memory = memory;
         let work = take(&mut memory, bounded::WORDS * longest);
         let frames: &mut [[f32; 4]] = bytemuck::cast_slice_mut(take(&mut memory, bounded::FRAMES * longest * LANES));
-        let bounded = |rows, mass| Bounded { params: &self.params, rows, h: step.h, mass };
         let mut limits = [None; LANES];
         let mut band = Band::<LANES>::new(memory, most * EQUATIONS);
-        let mut masses = [0.0; LANES];
+        let (mut masses, mut most_squared) = ([0.0; LANES], [0.0; LANES]);
+        let points = |lane: usize| lane * longest..lane * longest + pieces[lane].count;
+        let joints = |lane: usize| pieces[lane].first..pieces[lane].first + pieces[lane].count;
+        let bounded = |lane: usize, mass| Bounded { params: &self.params, rows: &rows[points(lane)], h: step.h, mass };
         for (lane, piece) in pieces.iter().enumerate() {
-            let rows = &rows[lane * longest..][..piece.count];
-            let joints = &mut joints[piece.first..][..piece.count];
+            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &mut frames[points(lane)]);
+            begun.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
             if rows.iter().any(|&row| !(bodies.inverse_mass[row as usize] > 0.0)) {
                 rows.iter().for_each(|&row| bodies.catch_up(row as usize));
             }
             masses[lane] = mean_mass(bodies, rows);
-            limits[lane] = piece.purse(purses, &mut [0; PURSE]).map(|purse| {
-                let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
-                bounded(rows, masses[lane]).limits(bodies, course, &purse)
-            });
-            Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.write(piece, joints);
+            limits[lane] = piece
+                .purse(purses, &mut [0; PURSE])
+                .map(|purse| bounded(lane, masses[lane]).limits(bodies, joints, &purse));
+            let mut writer = Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] };
+            writer.write(piece, joints);
+            writer.ask(piece, joints, begun);
         }
         band.solve();
         for (lane, piece) in pieces.iter().enumerate() {
-            let rows = &rows[lane * longest..][..piece.count];
-            let joints = &mut joints[piece.first..][..piece.count];
+            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &frames[points(lane)]);
+            joints.iter_mut().for_each(|joint| joint.tension = 0.0);
+            most_squared[lane] = most_again(&band, lane, bodies, rows);
             let is_solved = act((&band, lane), piece, bodies, rows, joints, masses[lane]);
             bodies.report.effort.solved(1, 0.0, !is_solved);
+            Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.ask(piece, joints, begun);
+        }
+        band.solve_again();
+        for (lane, piece) in pieces.iter().enumerate() {
+            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &frames[points(lane)]);
+            if way_squared(&band, lane, piece.count) < most_squared[lane] {
+                act((&band, lane), piece, bodies, rows, joints, masses[lane]);
+            }
             if let (Some(limits), Some(mut purse)) = (limits[lane], piece.purse(purses, &mut [0; PURSE])) {
-                let course = Course { joints, before: &mut frames[lane * longest..][..piece.count], work };
-                bounded(rows, masses[lane]).keep_within(limits, bodies, course, &mut purse);
+                let course = Course { joints, before: begun, work };
+                bounded(lane, masses[lane]).keep_within(limits, bodies, course, &mut purse);
             }
         }
     }
+}
+
+/// The square of how far a solution takes the points of a piece together \[m²\].
+fn way_squared<const LANES: usize>(band: &Band<'_, LANES>, lane: usize, points: usize) -> f32
+where
+    [f32; LANES]: Pod,
+{
+    (0..points).map(|number| band.vector(lane, number * EQUATIONS).length_squared()).sum()
+}
+
+/// The square of how far a second step may take the points of a piece together after this first one \[m²\]; nothing, where that has turned some edge far.
+fn most_again<const LANES: usize>(band: &Band<'_, LANES>, lane: usize, bodies: &Bodies<'_>, rows: &[u32]) -> f32
+where
+    [f32; LANES]: Pod,
+{
+    let is_little = rows.windows(2).enumerate().all(|(number, ends)| {
+        let [from, to] = [ends[0], ends[1]].map(|row| bodies.position[row as usize]);
+        let [near, far] = [number, number + 1].map(|number| band.vector(lane, number * EQUATIONS));
+        let turn = band.answer(lane, (number + 1) * EQUATIONS + TURN);
+        length(far - near) < LITTLE * length(to - from) && turn.abs() < LITTLE
+    });
+    if is_little { CLOSER * CLOSER * way_squared(band, lane, rows.len()) } else { 0.0 }
 }
 
 /// The mean mass of those that move \[kg\]; one, if none does.

@@ -17,9 +17,9 @@ use glam::{Mat3, Vec3};
 /// In this order, from the tip to the root, what each equation is solved for is known from the material or from masses, and never from a
 /// small difference: stiffness may be as high as one likes (Vanderbei, "Symmetric quasidefinite matrices", SIAM J. Optimization 5, 1995).
 pub(super) const EQUATIONS: usize = 8;
-const PULL: usize = 3;
-const BEND: usize = 4;
-const TURN: usize = 7;
+pub(super) const PULL: usize = 3;
+pub(super) const BEND: usize = 4;
+pub(super) const TURN: usize = 7;
 
 /// How firmly the material's turns are held, as a share of what resists twisting: all of a free strand's turning as one is undetermined.
 const HOLD: f32 = 1e-4;
@@ -73,13 +73,8 @@ pub(super) struct Step<'a> {
 
 impl Step<'_> {
     /// The seconds of a strain's rate that count as strain, in sub-steps.
-    fn lag(&self) -> f32 {
+    pub(super) fn lag(&self) -> f32 {
         self.params.damping / self.h
-    }
-
-    /// What a strain asks for, having been another when the sub-step began.
-    fn asks(&self, now: f32, before: f32) -> f32 {
-        -(now + self.lag() * (now - before)) / (1.0 + self.lag())
     }
 
     /// How far something of a stiffness gives way, × 1/h².
@@ -105,9 +100,9 @@ impl Driven {
 
 /// A point of a piece: the row it is in, and its inverse mass in units of that of the piece's mean.
 #[derive(Clone, Copy)]
-struct Point {
-    row: usize,
-    weight: f32,
+pub(super) struct Point {
+    pub(super) row: usize,
+    pub(super) weight: f32,
 }
 
 /// The equations of a piece, being written.
@@ -125,7 +120,7 @@ impl<const LANES: usize> Writer<'_, '_, '_, LANES>
 where
     [f32; LANES]: Pod,
 {
-    fn point(&self, number: usize) -> Point {
+    pub(super) fn point(&self, number: usize) -> Point {
         let row = self.rows[number] as usize;
         Point { row, weight: self.bodies.inverse_mass[row] * self.mass }
     }
@@ -134,7 +129,19 @@ where
         self.band.add(self.lane, row, column, more);
     }
 
-    /// Writes all equations of a piece, and leaves in its joints the frames of its edges where the method has moved them.
+    /// How far an edge of this length gives way.
+    pub(super) fn edge_softness(&self, rest: f32, ends: [Point; 2]) -> f32 {
+        let soft = self.step.params.stretch.map_or(0.0, |stretch| rest * self.mass * self.step.softness(stretch));
+        max(soft, RIDGE * (ends[0].weight + ends[1].weight))
+    }
+
+    /// How far this length of a strand gives way to being bent about the two axes of its section, and twisted.
+    pub(super) fn bend_softness(&self, share: f32) -> [f32; 3] {
+        let StrandParams { bending: [first, second], twisting, .. } = *self.step.params;
+        [first, second, twisting].map(|stiffness| share * self.mass * self.step.softness(stiffness))
+    }
+
+    /// Writes the equations of a piece but for what they ask for, and leaves in its joints the frames of its edges where the method has moved them.
     pub(super) fn write(&mut self, piece: &Piece, joints: &mut [Joint]) {
         let mut last: Option<Edge> = None;
         let driven = self.driven(piece);
@@ -192,22 +199,14 @@ where
         if embedded {
             return Some(edge);
         }
-        let (rest, tension) = (joint.length, joint.tension);
-        let soft = self.step.params.stretch.map_or(0.0, |stretch| rest * self.mass * self.step.softness(stretch));
-        let soft = max(soft, RIDGE * (ends[0].weight + ends[1].weight));
+        let (soft, tension) = (self.edge_softness(joint.length, ends), joint.tension);
         if !(soft < f32::INFINITY) {
             return Some(edge);
         }
         let own = (number + 1) * EQUATIONS + PULL;
         self.band.set(self.lane, own, own, -soft);
-        let [now, _, before] = edge.length.map(|length| length - rest);
-        self.band.ask(
-            self.lane,
-            own,
-            if self.step.params.stretch.is_some() { self.step.asks(now, before) } else { -now },
-        );
         // What is tense swings to and fro across: a quarter of that keeps any step stable, and takes nothing from the motion.
-        let taut = 0.25 * h * h * max(tension, 0.0) / (self.mass * edge.length[1]);
+        let taut = 0.25 * h * h * max(tension, 0.0) / (self.mass * edge.length);
         let taut = if taut < f32::INFINITY { taut } else { 0.0 };
         for (axis, along) in edge.along.to_array().into_iter().enumerate() {
             let columns = [number, number + 1].map(|end| end * EQUATIONS + axis);
@@ -228,23 +227,20 @@ where
     fn bend(&mut self, number: usize, edges: [&Edge; 2], joints: &[Joint], is_held: [bool; 2]) {
         let half = |i: usize| if edges[i].embedded { 0.0 } else { 0.5 * joints[i].length };
         let share = half(0) + half(1);
-        let [now, along, before] = [0, 1, 2].map(|i| strain(edges[0].frame[i], edges[1].frame[i]));
-        let is_sound = now.is_finite() && along.is_finite() && before.is_finite() && share > 0.0;
-        if !is_sound {
+        let along = strain(edges[0].frame[1], edges[1].frame[1]);
+        if !(share > 0.0 && along.is_finite()) {
             return;
         }
-        let ([now, before], [first, second]) = ([now, before].map(|g| g - joints[1].rest), self.step.params.bending);
-        let stiffness = [first, second, self.step.params.twisting];
+        let softness = self.bend_softness(share);
         for (k, gradient) in gradients(edges[1].frame[1], along).into_iter().enumerate() {
-            let soft = share * self.mass * self.step.softness(stiffness[k]);
+            let soft = softness[k];
             if !(soft < f32::INFINITY) {
                 continue;
             }
             let own = number * EQUATIONS + BEND + k;
             self.band.set(self.lane, own, own, -soft);
-            self.band.ask(self.lane, own, self.step.asks(now[k], before[k]));
             // A frame turns as its edge does, t × de / length, and about itself.
-            let ways = edges.map(|edge| gradient.cross(edge.along) / edge.length[1]);
+            let ways = edges.map(|edge| gradient.cross(edge.along) / edge.length);
             let pushes = [ways[0], -ways[0] - ways[1], ways[1]];
             for (point, push) in (number - 1..).zip(pushes) {
                 if self.point(point).weight > 0.0 {
@@ -282,7 +278,7 @@ where
     if !(0..equations).all(|row| band.answer(lane, row).is_finite()) {
         return false;
     }
-    let shift = |number: usize| Vec3::from_array([0, 1, 2].map(|axis| band.answer(lane, number * EQUATIONS + axis)));
+    let shift = |number: usize| band.vector(lane, number * EQUATIONS);
     let [drift, turn, middle] = if piece.is_free { stray(bodies, rows, shift) } else { [Vec3::ZERO; 3] };
     let h = bodies.substep.seconds();
     for (number, &row) in rows.iter().enumerate() {
@@ -300,7 +296,7 @@ where
             let turn = clamp(band.answer(lane, own + TURN), -FARTHEST, FARTHEST);
             joint.turn = bring(Turn(joint.turn), direction).on(direction * turn).0;
         }
-        joint.tension = band.answer(lane, own + PULL) * mass / (h * h);
+        joint.tension += band.answer(lane, own + PULL) * mass / (h * h);
     }
     true
 }

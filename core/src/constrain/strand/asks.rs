@@ -1,0 +1,91 @@
+//! What the equations of a strand ask for: once from where the method has brought it, and again from where their solution has.
+
+use super::frame::{bring, strain};
+use super::joint::Joint;
+use super::piece::{BEND, EQUATIONS, PULL, Piece, Step, TURN, Writer};
+use crate::constrain::turn::Turn;
+use crate::math::length;
+use bytemuck::Pod;
+
+/// How long an edge is \[m\] and its frame: now, and as the sub-step began.
+#[derive(Clone, Copy)]
+struct Seen {
+    length: [f32; 2],
+    frame: [Turn; 2],
+    /// True if both its ends are fixed.
+    embedded: bool,
+}
+
+impl Step<'_> {
+    /// What a strain asks for, having been another when the sub-step began.
+    fn asks(&self, [now, before]: [f32; 2]) -> f32 {
+        -(now + self.lag() * (now - before)) / (1.0 + self.lag())
+    }
+}
+
+impl<const LANES: usize> Writer<'_, '_, '_, LANES>
+where
+    [f32; LANES]: Pod,
+{
+    /// Writes what the equations of a piece ask for beyond what the solution so far, where there is one, has given them. The frames of its edges were `begun`
+    /// when the sub-step began.
+    ///
+    /// A solution takes edges for moving straight that turn: what gravity moves across an edge in a sub-step seems to stretch it, by half the square of that over
+    /// its length. Where strains are damped so little is a jerk, and a strand would be held by it. Asking again from where the solution has brought
+    /// it is a second step of Newton's method; the factors of the first one serve.
+    pub(super) fn ask(&mut self, piece: &Piece, joints: &[Joint], begun: &[[f32; 4]]) {
+        let mut last: Option<Seen> = None;
+        for number in 0..piece.count {
+            for equation in [0, 1, 2, TURN] {
+                self.band.ask(self.lane, number * EQUATIONS + equation, 0.0);
+            }
+            let edge = (number + 1 < piece.count).then(|| self.seen(number, &joints[number], begun[number]));
+            if let Some(edge) = edge {
+                self.ask_of_edge(number, edge, &joints[number]);
+                if let Some(last) = last {
+                    self.ask_of_bend(number, [last, edge], &joints[number - 1..=number]);
+                }
+            }
+            last = edge;
+        }
+    }
+
+    /// The edge from a point to the next.
+    fn seen(&self, number: usize, joint: &Joint, begun: [f32; 4]) -> Seen {
+        let ends = [number, number + 1].map(|end| self.point(end));
+        let [p, q] = ends.map(|end| end.row);
+        let [now, before] = [self.bodies.position, self.bodies.before[0]].map(|x| x[q] - x[p]);
+        let lengths = [now, before].map(length);
+        let direction = before / lengths[1];
+        let begun = if direction.is_finite() { bring(Turn(begun), direction) } else { Turn(begun) };
+        let embedded = !(ends[0].weight + ends[1].weight > 0.0);
+        Seen { length: lengths, frame: [Turn(joint.turn), begun], embedded }
+    }
+
+    /// What is left for an edge to ask for.
+    fn ask_of_edge(&mut self, number: usize, edge: Seen, joint: &Joint) {
+        let soft = self.edge_softness(joint.length, [number, number + 1].map(|end| self.point(end)));
+        let strains = edge.length.map(|length| length - joint.length);
+        let asked = if self.step.params.stretch.is_some() { self.step.asks(strains) } else { -strains[0] };
+        if !edge.embedded {
+            self.ask_for((number + 1) * EQUATIONS + PULL, asked, soft);
+        }
+    }
+
+    /// What is left for the bending and twisting at a point between two edges to ask for.
+    fn ask_of_bend(&mut self, number: usize, edges: [Seen; 2], joints: &[Joint]) {
+        let half = |i: usize| if edges[i].embedded { 0.0 } else { 0.5 * joints[i].length };
+        let softness = self.bend_softness(half(0) + half(1));
+        let strains = [0, 1].map(|i| strain(edges[0].frame[i], edges[1].frame[i]) - joints[1].rest);
+        for (k, soft) in softness.into_iter().enumerate() {
+            self.ask_for(number * EQUATIONS + BEND + k, self.step.asks(strains.map(|strain| strain[k])), soft);
+        }
+    }
+
+    /// Asks for what an equation of this softness has not been given; for nothing, where there is no such equation.
+    fn ask_for(&mut self, own: usize, asked: f32, soft: f32) {
+        let left = asked + soft * self.band.answer(self.lane, own);
+        let is_one = soft > 0.0 && left.is_finite();
+        self.band.ask(self.lane, own, if is_one { left } else { 0.0 });
+    }
+}
