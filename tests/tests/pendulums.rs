@@ -1,7 +1,7 @@
 //! Ropes that hang: how they swing and how they sag, against closed forms.
 
 use pointmass::{Drag, Gravity, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, run, started};
+use pointmass_tests::{Random, f64s, gap, is_run, run, started};
 
 const G: f64 = 9.81;
 
@@ -156,13 +156,16 @@ fn ropes_swing_in_their_time() {
     let continuous = 1.202_413 * (G / 2.0).sqrt();
     // Its masses are at the lower ends of links: half a link's more than the rope has.
     assert!((bare.mode().0 / continuous - 1.0).abs() < 2e-3, "{}", bare.mode().0 / continuous);
-    let (mut random, mut swung, mut failures) = (Random::new(1), 0, vec![]);
+    let (mut random, mut swung, mut cases, mut failures) = (Random::new(1), 0, 0, vec![]);
     let mut methods = [Method::Symplectic, Method::Verlet, Method::Rk4, Method::Midpoint].into_iter().cycle();
     for length in [0.3, 1.0, 5.0] {
         for links in [1, 2, 5, 12, 30] {
             for share in [0.0, 1.0, 100.0, 1000.0] {
                 for gives in [0.0, 1e-4] {
                     for substeps in [1, 2, 5, 20] {
+                        if !is_run(&mut cases) {
+                            continue;
+                        }
                         let mass = 0.1 / links as f64;
                         let hung = Hung { links, length, mass, bob: 0.1 * share, gives };
                         let (omega, shape) = hung.mode();
@@ -184,7 +187,7 @@ fn ropes_swing_in_their_time() {
             }
         }
     }
-    assert!(failures.is_empty() && swung > 250, "{} of {swung} {failures:#?}", failures.len());
+    assert!(failures.is_empty() && swung > 120, "{} of {swung} {failures:#?}", failures.len());
 }
 
 /// Wide swings of a heavy bob on a light rope: against the elliptic integral by the arithmetic-geometric mean.
@@ -267,7 +270,7 @@ fn bobs_keep_swinging_on_ropes_of_many_links() {
 /// no link is strained by 0.5 %.
 #[test]
 fn ropes_between_hooks_hang_in_catenaries() {
-    let mut random = Random::new(3);
+    let (mut random, mut cases) = (Random::new(3), 0);
     let mut ways = [
         (5, Method::Symplectic, false),
         (10, Method::Rk4, true),
@@ -279,6 +282,9 @@ fn ropes_between_hooks_hang_in_catenaries() {
     for (span, rise, length) in [(1.0f64, 0.0f64, 1.2f64), (1.0, 0.5, 2.0), (3.0, -1.0, 3.4), (0.2, 0.0, 0.6)] {
         for links in [24usize, 48, 96] {
             let (substeps, method, tether) = ways.next().expect("there is always a next one");
+            if !is_run(&mut cases) {
+                continue;
+            }
             let pose = Pose::any(&mut random);
             // Two straight halves from hook to hook.
             let (far, half) = ((span * span + rise * rise).sqrt(), 0.5 * length);

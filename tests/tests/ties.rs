@@ -2,7 +2,7 @@
 
 use pointmass::constrain::{ShapeMatching, Tie};
 use pointmass::{Constraint, Drag, Gravity, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, run, started};
+use pointmass_tests::{Random, f64s, gap, is_run, run, started};
 
 /// The place on a body, in double precision, by its particles' shares and an offset along their normal.
 fn place(x: &[Vec3], to: &[u32], weights: &[f32], offset: f32) -> [f64; 3] {
@@ -78,10 +78,14 @@ fn ties_keep_momentum_and_place() {
 /// Bodies that hang from what is fixed, or from which something hangs: how far from its place the tied particle comes to rest.
 #[test]
 fn what_hangs_by_a_tie_is_as_far_away_as_its_compliance_says() {
+    let mut cases = 0;
     for (round, method) in Method::ALL.iter().enumerate() {
         for (substeps, compliance, mass) in [(1u32, 0.01f32, 0.1f32), (4, 1e-3, 2.0), (10, 0.5, 1e-3), (5, 0.0, 1.0)] {
             for count in [1usize, 2, 3, 4, 8] {
                 for is_held in [false, true] {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
                     let scale = [1.0f32, 0.1, 20.0][(round + count) % 3];
                     let (step, g) = (f64::from(scale).sqrt() / 60.0, 10.0);
                     let compliance = compliance * scale;
