@@ -264,7 +264,7 @@ fn substeps_are_what_shorter_steps_are() {
     assert_eq!(report["hash"], same["hash"]);
     let finer = folder.report("busy.scn --dt 1/30 --steps 60 --substeps auto --tolerance 1e-5");
     assert!(number(&finer, "substeps/total") > total, "{finer}");
-    let text = folder.run("run busy.scn --dt 1/30 --steps 60 --substeps auto").fine().stdout;
+    let text = folder.run("run busy.scn --dt 1/30 --steps 60 --substeps auto --tolerance 1e-5").fine().stdout;
     assert!(text.contains("sub-steps") && text.contains("on average"), "{text}");
 }
 

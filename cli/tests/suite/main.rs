@@ -13,6 +13,7 @@ mod fuzz;
 mod lab;
 #[cfg(unix)]
 mod outputs;
+mod pace;
 mod random;
 mod recorded;
 mod recorded_bodies;
