@@ -11,6 +11,7 @@ mod course;
 mod films;
 mod fuzz;
 mod lab;
+mod onset;
 #[cfg(unix)]
 mod outputs;
 mod pace;
