@@ -143,7 +143,7 @@ impl World {
         system.start(&model.scene(), seed)?;
         let method = model.integrator.method;
         let is_auto = args.substeps == Substeps::Auto;
-        let limit = if is_auto { Bounds::of(&model).whole_step(method) } else { Limit::Unconditional };
+        let limit = if is_auto { Bounds::lasting(&model).whole_step(method) } else { Limit::Unconditional };
         let tolerance = args.tolerance.unwrap_or_else(|| TOLERANCE * size(&file, &model));
         let pace = Pace::new(args.substeps, limit, tolerance);
         let threads = threads(args.threads, capacity)?;

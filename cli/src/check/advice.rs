@@ -34,16 +34,25 @@ pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
 
 fn fine(check: &Study, limit: Limit) -> String {
     let (step, method) = (time(check.h()), &check.integrator);
+    let others = check.not_judged.join(", ");
     match limit {
         Limit::Step(limit) => {
             let part = plain(100.0 * check.h() / limit);
-            let text = format!("steps of {step} by {method} are stable: {part} % of the largest that is in every pose");
+            let but = if others.is_empty() { String::new() } else { format!(" but for {others}") };
+            let text =
+                format!("steps of {step} by {method} are stable{but}: {part} % of the largest that is in every pose");
             match check.h() > 0.5 * limit {
                 true => format!("{text}; stable is not accurate, --substeps auto takes care of both"),
                 false => text,
             }
         }
-        _ => format!("neither springs nor drag nor contacts nor goals limit the step of {method}: {step} or any other"),
+        _ if others.is_empty() => {
+            format!("neither springs nor drag nor contacts nor goals limit the step of {method}: {step} or any other")
+        }
+        _ => format!(
+            "neither springs nor drag nor contacts nor goals limit the step of {method}, but others do: whether {step} are \
+             stable is not known"
+        ),
     }
 }
 
@@ -62,6 +71,10 @@ fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
                 )
             }
             true => format!("steps of {step} by {} are not stable in every pose: they may explode", stand.method),
+            // What is braked so much may be slower or farther apart after a step, and stand the next.
+            false if !check.judged_at_start.is_empty() => {
+                format!("steps of {step} by {} are too long for how the scene starts: they may explode", stand.method)
+            }
             false => format!("steps of {step} by {} explode", stand.method),
         },
         format!(
@@ -151,6 +164,13 @@ fn world(check: &Study) -> Vec<String> {
             "not looked at: {}, which limit the step as well; see whether half of it changes what happens, or take \
              --substeps auto",
             check.not_judged.join(", ")
+        ));
+    }
+    if !check.judged_at_start.is_empty() {
+        advice.push(format!(
+            "judged by how fast and how near to each other particles start: {}; where they become faster or nearer, the step \
+             has to be shorter, and --substeps auto makes it so",
+            check.judged_at_start.join(" and ")
         ));
     }
     if let Some(followed) = check.followed.as_ref().filter(|followed| check.dt > followed.step) {

@@ -1,6 +1,7 @@
 //! Whoever a scene may hold: its particles and what emitters bear, each with the extremes of its life.
 
 use super::life::Ages;
+use super::onset::Onset;
 use super::part::place;
 use super::words::plain;
 use pointmass::scene::Model;
@@ -20,30 +21,35 @@ pub(crate) struct Body {
     drag: [f64; 2],
     /// The coefficient and the mass when it is braked most.
     braked: [f64; 2],
+    /// Some of that is how forces brake it as it starts, and may become more or less.
+    starts: bool,
     /// Its life changes its drag or mass.
     ages: bool,
 }
 
 impl Body {
     /// All of a scene: first the particles in their order, then one for each emitter.
-    pub(crate) fn all(model: &Model) -> Vec<Self> {
+    pub(crate) fn all(model: &Model, onset: &Onset) -> Vec<Self> {
         let air = air(model);
+        let least = |mass: Varied| f64::from(mass.mean - mass.half_width.abs());
         let start = model.particles.iter().enumerate().map(|(i, &particle)| {
             let [mass, drag, lifetime] = [particle.mass, particle.drag, particle.lifetime].map(Varied::exactly);
-            Self::of(model, air, (false, i), particle, [mass, drag, lifetime])
+            let more = onset.of_particle(i, &particle, least(mass));
+            Self::of(model, (air, more), (false, i), particle, [mass, drag, lifetime])
         });
         let births = model.emitters.iter().enumerate().map(|(i, emitter)| {
             let Emitter { radius, mass, drag, lifetime, fixed, material, .. } = *emitter;
             let radius = radius.mean + radius.half_width.abs();
             let particle = Particle { radius, fixed, material, ..Particle::REST };
-            Self::of(model, air, (true, i), particle, [mass, drag, lifetime])
+            let more = onset.of_born(emitter, least(mass));
+            Self::of(model, (air, more), (true, i), particle, [mass, drag, lifetime])
         });
         start.chain(births).collect()
     }
 
     fn of(
         model: &Model,
-        [own, all]: [f64; 2],
+        ([own, all], more): ([f64; 2], f64),
         (is_born, number): (bool, usize),
         particle: Particle,
         [mass, drag, lifetime]: [Varied; 3],
@@ -61,8 +67,9 @@ impl Body {
             is_born,
             number,
             mass: [masses[0] * factors[0], masses[1] * factors[1]],
-            drag: [loose[0].min(tight[0]), loose[1].max(tight[1])],
-            braked: ages.most_braked(&life, |factor| brake(factor)[1], masses[0]),
+            drag: [loose[0].min(tight[0]), loose[1].max(tight[1]) + more],
+            braked: ages.most_braked(&life, |factor| brake(factor)[1] + more, masses[0]),
+            starts: more > 0.0,
             ages: life.drag.is_some() || life.mass.is_some(),
         }
     }
@@ -88,7 +95,17 @@ impl Body {
     /// The drag and the mass when it is braked most, in words.
     pub(crate) fn brake(&self) -> String {
         let [drag, mass] = self.braked.map(plain);
-        self.at_some_age(format!("of drag {drag} kg/s and mass {mass} kg"))
+        let now = if self.starts { " as it starts" } else { "" };
+        self.at_some_age(format!("of drag {drag} kg/s{now} and mass {mass} kg"))
+    }
+
+    /// What is odd about a drag that pushes, if it may.
+    pub(crate) fn push(&self, model: &Model) -> Option<String> {
+        let [least, _] = self.drag;
+        (self.is_free() && least < 0.0).then(|| {
+            let place = self.place(model);
+            format!("{place} has a drag of {} kg/s: below zero it adds energy, take one of zero or above", plain(least))
+        })
     }
 
     /// Its least weight in words, unless it is fixed.

@@ -6,6 +6,7 @@ use super::body::{Body, extremes};
 use super::contact::Contact;
 use super::goal::Goals;
 use super::hold::Hold;
+use super::onset::Onset;
 use super::part::{Part, place};
 use super::words::time;
 use pointmass::scene::Model;
@@ -28,13 +29,25 @@ pub(crate) struct Bounds {
     pub(crate) goals: Option<Goals>,
     /// The constraints.
     pub(crate) holds: Vec<Hold>,
+    /// What is odd about the first particle that drag pushes.
+    pushed: Option<String>,
     /// Parts that the scene cuts each step into.
     substeps: f64,
 }
 
 impl Bounds {
+    /// Those of a scene, with what brakes particles as they start.
     pub(crate) fn of(model: &Model) -> Self {
-        let bodies = Body::all(model);
+        Self::with(model, &Onset::of(model))
+    }
+
+    /// Those that hold as long as a scene runs, however fast or near to each other particles are.
+    pub(crate) fn lasting(model: &Model) -> Self {
+        Self::with(model, &Onset::none())
+    }
+
+    fn with(model: &Model, onset: &Onset) -> Self {
+        let bodies = Body::all(model, onset);
         let corners = extremes(&bodies[..model.particles.len()]);
         Self {
             poses: corners.iter().map(|corner| Poses::of(corner, &model.springs, true)).collect(),
@@ -43,6 +56,7 @@ impl Bounds {
             contact: Contact::of(model, &bodies),
             goals: Goals::of(model, &bodies),
             holds: Hold::all(model),
+            pushed: bodies.iter().find_map(|body| body.push(model)),
             substeps: f64::from(model.substeps),
             bodies,
         }
@@ -91,7 +105,7 @@ impl Bounds {
     /// Warnings of a run with this step \[s\], which the scene may cut into parts, that takes this long \[s\].
     pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
         let step = step / self.substeps;
-        let held = self.holds.iter().filter_map(|hold| hold.warning(step));
+        let held = self.pushed.clone().into_iter().chain(self.holds.iter().filter_map(|hold| hold.warning(step)));
         if method.chooses_steps() {
             return held.collect();
         }

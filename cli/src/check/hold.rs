@@ -209,7 +209,16 @@ impl Hold {
         if self.rate.is_some_and(|rate| h * rate > 1.0) {
             let _ = write!(told, "; swings below {} fade", time(std::f64::consts::TAU * h));
         }
+        told.extend(self.fades(h));
         told
+    }
+
+    /// What a second of sub-steps of `h` \[s\] takes of the swing of a cluster, which has one frequency, in words: (1 + h² ω²)^(-1/2) is
+    /// left by each, as by implicit Euler.
+    fn fades(&self, h: f64) -> Option<String> {
+        let rate = self.rate.filter(|_| self.kind == "cluster")?;
+        let share = 1.0 - (-0.5 / h * (h * rate).powi(2).ln_1p()).exp();
+        (share > FAULT).then(|| format!("; a second takes {} % of its swing", short(100.0 * share)))
     }
 
     /// The number of iterations of conjugate gradients that take the error to 1e-4 in sub-steps of `h` \[s\]: ½ √κ ln(2/ε) at the

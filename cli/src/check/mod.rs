@@ -1,6 +1,6 @@
 //! `pointmass check`: which steps a scene stands, what limits them, and what to change.
 //!
-//! `body` is whoever there may be, with the extremes of its `life`. `net` makes matrices of the springs, `modes` and `verlet`
+//! `body` is whoever there may be, with the extremes of its `life` and what brakes it at the `onset`. `net` makes matrices of the springs, `modes` and `verlet`
 //! work out their oscillations at rest, `bounds` what holds in every pose, `contact` and `hit` what touching balls ask for,
 //! `goal` what goals do, `statics` how hard links are pulled, `fall` how hard sheets hit, `hold` what constraints do, `world` what else has a time of its own;
 //! `study` is what it came to, which `advice` puts into words, and `report` and `plot` tell.
@@ -16,6 +16,7 @@ mod hold;
 mod life;
 mod modes;
 mod net;
+mod onset;
 mod part;
 mod plot;
 mod report;

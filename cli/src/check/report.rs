@@ -13,7 +13,7 @@ use pointmass::stability::Limit;
 use std::fmt::Write;
 
 /// The meaning of the figures.
-const NOTES: [&str; 7] = [
+const NOTES: [&str; 8] = [
     "A step is stable while nothing that should swing or come to rest grows. It is not accurate yet.",
     "At rest: the oscillations of the springs where the scene begins, as if each had its rest length there, without gravity \
      and other forces; what only drifts is left out.",
@@ -22,6 +22,8 @@ const NOTES: [&str; 7] = [
     "Contact: hits of balls that push each other apart give back no more energy than they take, however the steps fall \
      within them, nor does a ball grow restless among as many of its size as can touch it.",
     "Goal: whoever is held by goals, with its springs and drag, in every pose.",
+    "Drag: with that which grows with the speed, and viscosity, as fast and as near to each other as particles start, or as fast as they \
+     fall at last. Of steps of which nothing is said but that they are not known, other forces were not looked at.",
     "Particles whose drag or mass changes over their lives are taken at their lightest, most and least braked.",
     "Taut springs pull across themselves as well, and their damping does not act there: explicit Euler and the midpoint \
      method make that grow at any step, however slowly.",
@@ -79,7 +81,8 @@ fn steps(study: &Study) -> Table {
     if study.led.is_some() {
         table.column("goal", stands().map(|stand| limit(stand.goal)));
     }
-    table.words(format!("at {}", time(study.h())), stands().map(verdict));
+    let is_whole = study.not_judged.is_empty();
+    table.words(format!("at {}", time(study.h())), stands().map(|stand| verdict(stand, is_whole)));
     table
 }
 
@@ -192,8 +195,8 @@ fn at_rest(stand: &Stand) -> String {
     if stand.estimated { format!("about {}", limit(stand.at_rest)) } else { limit(stand.at_rest) }
 }
 
-/// The verdict on the step.
-fn verdict(stand: &Stand) -> String {
+/// The verdict on the step, which is the whole truth only if all forces were looked at.
+fn verdict(stand: &Stand, is_whole: bool) -> String {
     let grows = stand.growth_across > 0.0;
     let across = || format!("up to e-fold in {}", time(1.0 / stand.growth_across));
     match stand.every_pose {
@@ -201,6 +204,7 @@ fn verdict(stand: &Stand) -> String {
         Limit::Never if grows => format!("grows, {}", across()),
         _ if !stand.stable => "unstable".into(),
         _ if grows => format!("stable; taut springs grow, {}", across()),
+        _ if !is_whole => "not known".into(),
         _ => "stable".into(),
     }
 }

@@ -7,7 +7,7 @@ use super::hold::Hold;
 use super::modes::{How, Spectrum};
 use super::part::Part;
 use super::words::typed;
-use super::world::{Followed, Pair, Pull, fastest_pair, followed, not_judged, pulls};
+use super::world::{Followed, Pair, Pull, fastest_pair, followed, judged_at_start, not_judged, pulls};
 use pointmass::Method;
 use pointmass::scene::{Model, Run};
 use pointmass::stability::Limit;
@@ -51,6 +51,8 @@ pub(crate) struct Study {
     pub(crate) sinks: Vec<Pull>,
     /// Forces that bound the step as well, by a law that is not looked at.
     pub(crate) not_judged: Vec<&'static str>,
+    /// Forces that bound the step by how fast and how near particles are, which is judged as they start.
+    pub(crate) judged_at_start: Vec<&'static str>,
     pub(crate) advice: Vec<String>,
 }
 
@@ -84,7 +86,7 @@ pub(crate) struct Stand {
     pub(crate) contact: Limit,
     /// The largest step that is stable for whoever goals hold, in every pose.
     pub(crate) goal: Limit,
-    /// True if it stands the step that is judged.
+    /// True if it stands the step that is judged, as far as forces are looked at.
     pub(crate) stable: bool,
     /// The rate at which an oscillation across taut springs may grow at that step.
     pub(crate) growth_across: f64,
@@ -120,6 +122,7 @@ impl Study {
             pair: fastest_pair(model, &bounds.bodies).filter(|pair| pair.period < 10.0 * run.duration),
             sinks: pulls(model, &bounds.bodies),
             not_judged: not_judged(model),
+            judged_at_start: judged_at_start(model),
             advice: Vec::new(),
         };
         (study, spectra)

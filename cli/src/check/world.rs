@@ -8,8 +8,8 @@ use pointmass::stability::longest_followed_step;
 use pointmass::{Force, ForceKind, Sink};
 use serde::Serialize;
 
-/// Particles that are looked at for the quickest pair.
-const MOST: usize = 4096;
+/// Particles that are looked at for the quickest pair, and for who is around whom.
+pub(crate) const MOST: usize = 4096;
 
 /// The length of paths that are followed with full accuracy to what they hit.
 #[derive(Debug, Serialize)]
@@ -50,10 +50,29 @@ pub(crate) struct Pull {
 
 /// Forces that may be as stiff as springs, depending on how near particles come or how fast they are.
 pub(crate) fn not_judged(model: &Model) -> Vec<&'static str> {
-    let is_judged = |force: &ForceKind| {
-        matches!(force, ForceKind::Gravity(_) | ForceKind::Drag(_) | ForceKind::Wind(_) | ForceKind::MutualGravity(_))
-    };
-    let mut names: Vec<_> = model.forces.0.iter().filter(|force| !is_judged(force)).map(Force::name).collect();
+    names(model, |force| !is_judged(force) && !is_judged_at_start(model, force))
+}
+
+/// Forces that are as stiff as particles are fast or near, and are taken as stiff as they start.
+pub(crate) fn judged_at_start(model: &Model) -> Vec<&'static str> {
+    names(model, |force| is_judged_at_start(model, force))
+}
+
+fn is_judged(force: &ForceKind) -> bool {
+    matches!(force, ForceKind::Gravity(_) | ForceKind::Drag(_) | ForceKind::Wind(_) | ForceKind::MutualGravity(_))
+}
+
+/// Who will be born among whom nobody knows, nor is it worked out for more than a few thousand.
+fn is_judged_at_start(model: &Model, force: &ForceKind) -> bool {
+    match force {
+        ForceKind::QuadraticDrag(_) => true,
+        ForceKind::Viscosity(_) => model.emitters.is_empty() && model.particles.len() <= MOST,
+        _ => false,
+    }
+}
+
+fn names(model: &Model, is_meant: impl Fn(&ForceKind) -> bool) -> Vec<&'static str> {
+    let mut names: Vec<_> = model.forces.0.iter().filter(|force| is_meant(force)).map(Force::name).collect();
     names.sort_unstable();
     names.dedup();
     names

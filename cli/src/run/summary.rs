@@ -1,6 +1,7 @@
 //! The summary of a run, for people and for programs.
 
 use super::groups::GroupError;
+use crate::report::words::counted;
 use crate::substeps::{MOST, Told};
 use crate::world::World;
 use pointmass::force::Entry;
@@ -241,7 +242,7 @@ fn parts(forces: &[Entry]) -> String {
 
 /// The division of steps, in words, if they were divided.
 fn substeps(told: &Told, steps: u64) -> Option<String> {
-    let Told { least, most, total, beyond, tolerance, .. } = *told;
+    let Told { least, most, total, beyond, farthest, tolerance, .. } = *told;
     if most <= 1 {
         return None;
     }
@@ -255,8 +256,13 @@ fn substeps(told: &Told, steps: u64) -> Option<String> {
         text.push_str(&format!(", chosen to end within {tolerance:.1e} m"));
     }
     if beyond > 0 {
+        let steps = counted(beyond as usize, "step");
+        let far = match farthest.is_finite() {
+            true => format!("the worst by about {farthest:.1e} m"),
+            false => "and somebody is no longer finite".into(),
+        };
         text.push_str(&format!(
-            "; {beyond} steps may be farther off: {MOST} is the most, and after hits more may not help"
+            "; but {steps} may be farther off, {far}: {MOST} is the most, and after hits more may not help"
         ));
     }
     Some(text)

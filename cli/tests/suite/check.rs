@@ -264,7 +264,7 @@ fn substeps_are_what_shorter_steps_are() {
     assert_eq!(report["hash"], same["hash"]);
     let finer = folder.report("busy.scn --dt 1/30 --steps 60 --substeps auto --tolerance 1e-5");
     assert!(number(&finer, "substeps/total") > total, "{finer}");
-    let text = folder.run("run busy.scn --dt 1/30 --steps 60 --substeps auto").fine().stdout;
+    let text = folder.run("run busy.scn --dt 1/30 --steps 60 --substeps auto --tolerance 1e-5").fine().stdout;
     assert!(text.contains("sub-steps") && text.contains("on average"), "{text}");
 }
 
@@ -320,10 +320,10 @@ fn wind_brakes_as_drag_does_and_what_is_not_looked_at_is_named() {
         assert!((step / 2e3 * rate - 1.0).abs() < 1e-6, "{forces}: {step}");
         assert_eq!(check["not_judged"], Value::Array(Vec::new()), "{forces}");
     }
-    let near = r#"{"viscosity": {"coefficient": 1, "reach": 1}}"#;
+    let near = r#"{"lennard_jones": {"epsilon": 1, "sigma": 0.3, "cutoff": 0.75}}"#;
     folder.write("a.json", scene(&format!("{near}, {near}, {{\"coulomb\": {{}}}}")));
     let text = folder.run("check a.json").fine().stdout;
-    assert!(text.contains("not looked at: charges, viscosity, ") && text.contains("1 particle (1 free)"), "{text}");
+    assert!(text.contains("not looked at: Lennard-Jones, charges, ") && text.contains("1 particle (1 free)"), "{text}");
 }
 
 #[test]

@@ -180,7 +180,7 @@ fn the_json_report_has_exactly_its_fields() {
                momentum angular_momentum hash seconds ns_per_particle_step";
     assert_eq!(fields(&report), expected(all));
     assert_eq!(fields(&report["died"]), expected("lifetime sink density chance other nonfinite"));
-    assert_eq!(fields(&report["substeps"]), expected("auto least most total beyond tolerance"));
+    assert_eq!(fields(&report["substeps"]), expected("auto least most total beyond farthest tolerance"));
     assert_eq!(fields(&report["energy"]), expected("kinetic potential"));
     assert!(report["caps"].as_object().is_some_and(|caps| caps.values().all(Value::is_u64)), "{report}");
     for vector in ["momentum", "angular_momentum"] {

@@ -11,8 +11,10 @@ mod course;
 mod films;
 mod fuzz;
 mod lab;
+mod onset;
 #[cfg(unix)]
 mod outputs;
+mod pace;
 mod random;
 mod recorded;
 mod recorded_bodies;

@@ -1,0 +1,93 @@
+//! What `check` and the warnings of `run` say of forces by how fast and how near to each other particles start, and of what they do not look at.
+
+use crate::pace::BULLET;
+use crate::tool::{Folder, number};
+use serde_json::Value;
+
+/// Two of 1 kg that drag each other along by 10 kg/s.
+const TREACLE: &str = r#"{"run": {"duration": 1, "dt": 0.05, "integrator": "euler"},
+    "particles": [{"velocity": [0, 1e-6, 0]}, {"position": [0.5, 0, 0]}],
+    "forces": [{"viscosity": {"coefficient": 20, "reach": 1}}]}"#;
+
+/// The largest steps by explicit Euler that a check tells of drag, and what it advises.
+fn judged(folder: &Folder, text: &str) -> (f64, String) {
+    folder.write("a.json", text);
+    let check = folder.run("check a.json --integrator euler --report json").fine().report();
+    let euler = check["methods"].as_array().expect("methods").iter().find(|stand| stand["method"] == "euler");
+    (number(euler.expect("the method"), "drag/step"), check["advice"].to_string())
+}
+
+#[test]
+fn drag_by_the_square_of_the_speed_is_judged_as_fast_as_particles_start_and_fall() {
+    let folder = Folder::new();
+    // 2 m over 2 k v.
+    let (step, advice) = judged(&folder, BULLET);
+    assert!((step / (0.01 / (0.01 * 800.0)) - 1.0).abs() < 1e-6, "{step}");
+    assert!(advice.contains("may explode") && advice.contains("particles start: quadratic drag;"), "{advice}");
+    let warnings = folder.run("run a.json --steps 1").warnings().join(" ");
+    assert!(warnings.contains("because of particles[0] of drag 16 kg/s as it starts"), "{warnings}");
+    assert!(folder.run("run a.json --steps 2 --substeps 100").warnings().is_empty());
+    // At last a kilogram falls with 10 m/s.
+    let falling = r#"{"particles": [{}],
+        "forces": [{"quadratic_drag": {"coefficient": 0.1}}, {"gravity": {"acceleration": [0, -10, 0]}}]}"#;
+    assert!((judged(&folder, falling).0 - 1.0).abs() < 1e-6);
+    let born = r#"{"emitters": [{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "rate": 1,
+        "speed": {"mean": 6, "half_width": 2}, "velocity": [3, 0, 4], "inherit": 0.4}],
+        "forces": [{"quadratic_drag": {"coefficient": 0.1}}]}"#;
+    assert!((judged(&folder, born).0 - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn viscosity_is_judged_as_near_as_particles_start() {
+    let folder = Folder::new();
+    let (step, advice) = judged(&folder, TREACLE);
+    assert!((step - 0.1).abs() < 1e-6 && advice.contains("particles start: viscosity;"), "{step} {advice}");
+    // What there is left of their difference grows beyond that.
+    for (dt, grows, warnings) in [(0.095, false, 0), (0.105, true, 1)] {
+        let answer = folder.run(&format!("run a.json --steps 50 --dt {dt} --report json"));
+        assert_eq!(answer.warnings().len(), warnings, "{answer:?}");
+        let report: Value = serde_json::from_str(&answer.stdout).expect("JSON");
+        assert_eq!(number(&report, "energy/kinetic") > 0.5e-12, grows, "{report}");
+    }
+    // Nobody knows who will be born among whom.
+    let source = r#""emitters": [{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "rate": 1}], "forces""#;
+    folder.write("a.json", TREACLE.replace("\"forces\"", source));
+    let text = folder.run("check a.json").fine().stdout;
+    assert!(text.contains("not looked at: viscosity") && !text.contains("particles start"), "{text}");
+}
+
+#[test]
+fn steps_are_not_called_stable_for_forces_that_nobody_looks_at() {
+    let folder = Folder::with("a.json", r#"{"particles": [{}, {"position": [1, 0, 0]}], "forces": [{"coulomb": {}}]}"#);
+    let text = folder.run("check a.json").fine().stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("not known") && text.contains("others do"), "{text}");
+    assert!(!text.contains("any stable") && !text.contains("or any other"), "{text}");
+}
+
+#[test]
+fn drag_below_zero_is_warned_of() {
+    let folder = Folder::with("a.json", r#"{"particles": [{}, {"drag": -0.5}], "forces": [{"drag": {}}]}"#);
+    let warnings = folder.run("run a.json --steps 1").warnings().join(" ");
+    assert!(warnings.contains("particles[1] has a drag of -0.5 kg/s: below zero it adds energy"), "{warnings}");
+    // Without the force it does nothing.
+    folder.write("b.json", r#"{"particles": [{"drag": -0.5}]}"#);
+    folder.run("run b.json --steps 1").fine();
+}
+
+#[test]
+fn what_sub_steps_take_of_a_soft_body_s_swing_is_told() {
+    let scene = |substeps: u32| {
+        format!(
+            r#"{{"run": {{"duration": 1, "dt": 0.01, "substeps": {substeps}}}, "soft_bodies": [{{"form": {{"box": [0.2, 0.2, 0.2]}},
+                "spacing": 0.05, "density": 1000, "frequency": 3, "damping": 0, "position": [0, 0, 0]}}]}}"#
+        )
+    };
+    let folder = Folder::new();
+    let told = |substeps: u32| {
+        folder.write("a.json", scene(substeps));
+        folder.run("check a.json").fine().stdout.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let [long, short] = [1, 100].map(told);
+    assert!(long.contains("a second takes") && long.contains("% of its swing"), "{long}");
+    assert!(!short.contains("of its swing") || short.contains("a second takes 1."), "{short}");
+}
