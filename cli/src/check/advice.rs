@@ -24,6 +24,7 @@ pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
         Limit::Step(limit) => advice.extend(too_long(check, stand, limit)),
         _ => advice.push(never(check, model, stand)),
     }
+    advice.extend(check.born.clone());
     advice.extend(damping(check, model));
     advice.extend(taut(check, stand));
     advice.extend(check.holds.iter().filter_map(|hold| held(check, hold)));

@@ -29,6 +29,8 @@ pub(crate) struct Bounds {
     pub(crate) goals: Option<Goals>,
     /// The constraints.
     pub(crate) holds: Vec<Hold>,
+    /// The newborn that drag slows down most.
+    born: Option<Part>,
     /// What is odd about the first particle that drag pushes.
     pushed: Option<String>,
     /// Parts that the scene cuts each step into.
@@ -52,7 +54,8 @@ impl Bounds {
         Self {
             poses: corners.iter().map(|corner| Poses::of(corner, &model.springs, true)).collect(),
             stiffest: stiffest(model, &bodies),
-            dragged: dragged(model, &bodies),
+            dragged: dragged(model, bodies.iter()),
+            born: dragged(model, bodies.iter().filter(|body| body.is_born())),
             contact: Contact::of(model, &bodies),
             goals: Goals::of(model, &bodies),
             holds: Hold::all(model),
@@ -102,10 +105,23 @@ impl Bounds {
         self.contact.as_ref().map_or(Limit::Unconditional, |contact| contact.largest_step(method))
     }
 
+    /// The warning that the newborn are thrown back in sub-steps of so long \[s\], whatever the method.
+    pub(crate) fn birth_warning(&self, h: f64) -> Option<String> {
+        let born = self.born.as_ref().filter(|born| h * born.mode.damping > 2.0)?;
+        let (Part { place, about, mode, .. }, now) = (born, time(h));
+        let parts = (self.substeps * h * mode.damping).ceil();
+        Some(format!(
+            "{place} {about}: the newborn fly to the end of their sub-step with the acceleration of their birth, and in {now} drag \
+             throws them back; take --substeps {parts}, whatever the method"
+        ))
+    }
+
     /// Warnings of a run with this step \[s\], which the scene may cut into parts, that takes this long \[s\].
     pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
         let step = step / self.substeps;
         let held = self.pushed.clone().into_iter().chain(self.holds.iter().filter_map(|hold| hold.warning(step)));
+        let is_alone = method.chooses_steps() || self.drag_step(method).admits(step);
+        let held = held.chain(self.birth_warning(step).filter(|_| is_alone));
         if method.chooses_steps() {
             return held.collect();
         }
@@ -167,8 +183,8 @@ fn stiffest(model: &Model, bodies: &[Body]) -> Option<Part> {
 }
 
 /// The body that is braked most.
-fn dragged(model: &Model, bodies: &[Body]) -> Option<Part> {
-    let braked = bodies.iter().filter(|body| body.is_free() && body.rate() > 0.0);
+fn dragged<'a>(model: &Model, bodies: impl Iterator<Item = &'a Body>) -> Option<Part> {
+    let braked = bodies.filter(|body| body.is_free() && body.rate() > 0.0);
     let body = braked.reduce(|a, b| if b.rate() > a.rate() { b } else { a })?;
     let mode = Mode { omega2: 0.0, damping: body.rate() };
     Some(Part { place: body.place(model), spring: None, about: body.brake(), mode })

@@ -35,6 +35,9 @@ pub(crate) struct Study {
     pub(crate) stiffest: Option<Part>,
     /// The body that drag slows down most.
     pub(crate) dragged: Option<Part>,
+    /// That the step throws the newborn back, if it does.
+    #[serde(skip)]
+    pub(crate) born: Option<String>,
     /// The balls that push each other apart most abruptly, and how long a hit of them lasts.
     pub(crate) touching: Option<Part>,
     pub(crate) hit: Option<f64>,
@@ -97,6 +100,7 @@ impl Study {
     pub(crate) fn of(path: &Path, model: &Model, run: &Run) -> (Self, Vec<Spectrum>) {
         let (dt, substeps, bounds) = (run.dt, model.substeps, Bounds::of(model));
         let h = dt / f64::from(substeps);
+        let born = bounds.birth_warning(h);
         let corners = extremes(&bounds.bodies[..model.particles.len()]);
         let spectra: Vec<_> = corners.iter().filter_map(|corner| Spectrum::of(corner, &model.springs)).collect();
         let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, h)).collect();
@@ -112,6 +116,7 @@ impl Study {
             oscillations: spectra.first().map(oscillations),
             stiffest: bounds.stiffest,
             dragged: bounds.dragged,
+            born,
             hit: bounds.contact.as_ref().map(Contact::duration),
             touching: bounds.contact.map(|contact| contact.part),
             led: bounds.goals.map(|goals| goals.part),

@@ -91,3 +91,29 @@ fn what_sub_steps_take_of_a_soft_body_s_swing_is_told() {
     assert!(long.contains("a second takes") && long.contains("% of its swing"), "{long}");
     assert!(!short.contains("of its swing") || short.contains("a second takes 1."), "{short}");
 }
+
+#[test]
+fn newborn_that_drag_throws_back_are_warned_of_whatever_the_method() {
+    let folder = Folder::new();
+    let born = r#"{"run": {"duration": 0.2, "dt": 0.01, "substeps": 2}, "emitters": [{"shape": {"line": {"from": [0, 0, 0], "to": [0, 0, 0]}},
+        "rate": 97, "speed": 6, "direction": [0, 1, 0], "drag": 900}], "forces": [{"drag": {}}]}"#;
+    folder.write("a.json", born);
+    for method in ["implicit", "adaptive", "embedded"] {
+        let lowest = |args: &str| {
+            folder.run(&format!("run a.json --integrator {method} --out a.csv {args}"));
+            let text = folder.read("a.csv");
+            let column = text.lines().next().and_then(|head| head.split(',').position(|name| name == "vy"));
+            let speeds = text.lines().skip(1).filter_map(|line| line.split(',').nth(column?)?.parse().ok());
+            speeds.fold(f64::INFINITY, f64::min)
+        };
+        let told = |args: &str| folder.run(&format!("run a.json --integrator {method} {args}")).warnings().join(" ");
+        assert!(told("").contains("emitters[0] of drag 900 kg/s and mass 1 kg: the newborn fly"), "{}", told(""));
+        assert!(told("").contains("take --substeps 9,"), "{}", told(""));
+        assert!(told("--substeps 5").is_empty() && lowest("--substeps 5") > -1e-3, "{method}");
+        assert!(lowest("") < -1.0, "{method}");
+        let check = folder.run(&format!("check a.json --integrator {method}")).fine().stdout;
+        assert!(check.contains("the newborn fly"), "{check}");
+    }
+    folder.write("a.json", born.replace("900", "300"));
+    assert!(folder.run("run a.json --integrator implicit").warnings().is_empty());
+}
