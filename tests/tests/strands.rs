@@ -131,6 +131,73 @@ fn damping_over_many_substeps_does_not_hold_a_cantilever() {
     }
 }
 
+/// Threads that swing from level, whip and fold, and wires between two hooks, gain nothing, in whatever sub-steps. What bears a load is lent the half of
+/// the square of what gravity gives it in a sub-step, each time; places may be a sub-step ahead of velocities.
+#[test]
+fn what_hangs_gains_no_energy() {
+    let mut methods = Method::ALL.iter().cycle();
+    let mut random = Random::new(11);
+    for (edges, long, radius, young) in
+        [(25u32, 1.0f32, 3e-4f32, 1e8f32), (20, 0.2, 4e-5, 4e9), (10, 0.5, 1e-3, 2e6), (30, 1.0, 2e-4, 2e11)]
+    {
+        for ends in 0..3 {
+            for substeps in [1, 3, 10] {
+                let [along, down] = pose(&mut random);
+                let rod = Rod { root: random.vector(long), along, long, edges };
+                let method = *methods.next().expect("there is always a next one");
+                let density = 1300.0 * std::f32::consts::PI * radius * radius;
+                let mut start = rod.clamped(density);
+                // Clamped, by a hinge, or between two.
+                start[0].fixed = ends != 1;
+                start[edges as usize + 1].fixed = ends == 2;
+                let start = &start[usize::from(ends > 0)..];
+                let tuft = strand(start, StrandParams::round(radius, young, 0.3));
+                let gravity = Gravity { acceleration: down * G };
+                let integrator = method.integrator();
+                let scene = Scene { start, forces: &gravity, constraints: &tuft, substeps, integrator, ..Scene::EMPTY };
+                let mut system = started(&scene, start.len(), 0);
+                let (mass, h) = (density * long, 1.0 / (60.0 * substeps as f32));
+                for frame in 1..=150u64 {
+                    system.step_to(&scene, Time::frame(frame, 60));
+                    let all = system.particles();
+                    let fallen =
+                        all.position.iter().zip(start).map(|(x, from)| from.mass * (*x - from.position).dot(down));
+                    let moving = all.velocity.iter().zip(all.mass).map(|(v, m)| 0.5 * m * v.length_squared());
+                    let gained = moving.sum::<f32>() - G * fallen.sum::<f32>();
+                    let lent = 0.5 * mass * G * G * h * (frame as f32 / 60.0);
+                    assert!(
+                        gained < (0.02 + h * (2.0 * G / long).sqrt()) * mass * G * long + lent,
+                        "{method}, {edges} edges of {long} m, {ends} in {substeps}: {} at {frame}",
+                        gained / (mass * G * long)
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A wire without bending stiffness worth the name between two hooks sags by L (3 w L / (64 E A))^⅓, however stiff it is and however damped.
+#[test]
+fn a_damped_wire_between_hooks_sags_as_far_as_it_stretches() {
+    for (long, edges, substeps, damping) in
+        [(1.0f32, 30u32, 4, 0.2f32), (1.0, 30, 10, 0.2), (0.5, 20, 10, 0.02), (3.0, 40, 20, 1.0)]
+    {
+        let rod = Rod { root: Vec3::ONE, along: Vec3::X, long, edges };
+        let (density, stretch) = (1e-3f32, 2.5e4f32);
+        let mut start = rod.clamped(density);
+        start.remove(0);
+        start[edges as usize].fixed = true;
+        let tuft = strand(&start, even(stretch, 1e-7, 1e-7, damping));
+        let gravity = Gravity { acceleration: Vec3::NEG_Y * G };
+        let scene = Scene { start: &start, forces: &gravity, constraints: &tuft, substeps, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        run(&mut system, &scene, 1.0 / 60.0, 900);
+        let sag = 1.0 - system.particles().position[edges as usize / 2].y;
+        let right = long * (3.0 * density * G * long / (64.0 * stretch)).cbrt();
+        assert!((sag / right - 1.0).abs() < 0.03, "{long} m in {substeps}, {damping} s: {}", sag / right);
+    }
+}
+
 #[test]
 fn a_load_at_the_tip_bends_a_cantilever_by_its_third_power() {
     let rod = |edges| Rod { root: Vec3::ONE, along: Vec3::NEG_X, long: 0.5, edges };

@@ -30,11 +30,16 @@ pub(super) struct Budget<'m>(pub(super) &'m mut [u32]);
 impl Budget<'_> {
     /// The most that there may be at the sub-step's end, where there was so much before it was solved.
     pub(super) fn most(&self, begin: f32) -> f32 {
+        self.most_of(begin, begin)
+    }
+
+    /// The same, where `all` is what there was, with what a solution may set free that is not counted otherwise.
+    pub(super) fn most_of(&self, begin: f32, all: f32) -> f32 {
         let kept = match *self.0 {
             [last, most, ..] if last | most != 0 => f32::from_bits(most) + (begin - f32::from_bits(last)),
             _ => begin,
         };
-        min(kept, SLACK * begin)
+        min(kept, SLACK * all)
     }
 
     /// Keeps what there is now, and may be.

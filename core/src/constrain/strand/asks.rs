@@ -17,9 +17,9 @@ struct Seen {
 }
 
 impl Step<'_> {
-    /// What a strain asks for, having been another when the sub-step began.
-    fn asks(&self, [now, before]: [f32; 2]) -> f32 {
-        -(now + self.lag() * (now - before)) / (1.0 + self.lag())
+    /// What a strain asks for that is damped over so many sub-steps, having been another when this one began.
+    fn asks([now, before]: [f32; 2], lag: f32) -> f32 {
+        -(now + lag * (now - before)) / (1.0 + lag)
     }
 }
 
@@ -64,9 +64,8 @@ where
 
     /// What is left for an edge to ask for.
     fn ask_of_edge(&mut self, number: usize, edge: Seen, joint: &Joint) {
-        let soft = self.edge_softness(joint.length, [number, number + 1].map(|end| self.point(end)));
-        let strains = edge.length.map(|length| length - joint.length);
-        let asked = if self.step.params.stretch.is_some() { self.step.asks(strains) } else { -strains[0] };
+        let (soft, lag) = self.edge_softness(joint.length, [number, number + 1].map(|end| self.point(end)));
+        let asked = Step::asks(edge.length.map(|length| length - joint.length), lag);
         if !edge.embedded {
             self.ask_for((number + 1) * EQUATIONS + PULL, asked, soft);
         }
@@ -78,14 +77,15 @@ where
         let softness = self.bend_softness(half(0) + half(1));
         let strains = [0, 1].map(|i| strain(edges[0].frame[i], edges[1].frame[i]) - joints[1].rest);
         for (k, soft) in softness.into_iter().enumerate() {
-            self.ask_for(number * EQUATIONS + BEND + k, self.step.asks(strains.map(|strain| strain[k])), soft);
+            let asked = Step::asks(strains.map(|strain| strain[k]), self.step.lag());
+            self.ask_for(number * EQUATIONS + BEND + k, asked, soft);
         }
     }
 
     /// Asks for what an equation of this softness has not been given; for nothing, where there is no such equation.
     fn ask_for(&mut self, own: usize, asked: f32, soft: f32) {
         let left = asked + soft * self.band.answer(self.lane, own);
-        let is_one = soft > 0.0 && left.is_finite();
+        let is_one = self.band.is_strain(self.lane, own) && left.is_finite();
         self.band.ask(self.lane, own, if is_one { left } else { 0.0 });
     }
 }

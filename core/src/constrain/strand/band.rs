@@ -65,6 +65,11 @@ where
         }
     }
 
+    /// Tells whether an equation says what pulls, bends or twists: what it is solved for is then below zero, solved or not.
+    pub(super) fn is_strain(&self, lane: usize, row: usize) -> bool {
+        self.entries.get(row * COLUMN).and_then(|pivot| pivot.get(lane)).is_some_and(|pivot| *pivot < 0.0)
+    }
+
     /// Sets the right side of an equation.
     pub(super) fn ask(&mut self, lane: usize, row: usize, to: f32) {
         if let Some(right) = self.right.get_mut(row).and_then(|right| right.get_mut(lane)) {

@@ -1,4 +1,4 @@
-//! The energy of strands that nothing holds.
+//! The energy of strands that nothing holds, or that hang from what stands still.
 
 use super::frame::{bring, strain};
 use super::joint::Joint;
@@ -18,7 +18,7 @@ pub(super) const FRAMES: usize = 4;
 /// Words kept for each strand.
 pub(super) const PURSE: usize = budget::WORDS + whole::WORDS;
 
-/// What is kept of a strand that nothing holds: the energy that it may have, and what rounding owes it.
+/// What is kept of a strand: the energy that it may have and, if nothing holds it, what rounding owes it.
 pub(super) struct Purse<'m> {
     budget: Budget<'m>,
     owed: Owed<'m>,
@@ -46,13 +46,16 @@ pub(super) struct Limits {
     whole: Option<Whole>,
 }
 
-/// A strand that nothing holds in a sub-step: its points are in these rows.
+/// A strand in a sub-step: its points are in these rows.
 pub(super) struct Bounded<'a> {
     pub(super) params: &'a StrandParams,
     pub(super) rows: &'a [u32],
+    pub(super) inverse_mass: &'a [f32],
     /// How long the sub-step is \[s\], and the mean mass of its points \[kg\].
     pub(super) h: f32,
     pub(super) mass: f32,
+    /// True if nothing holds it, else it hangs from what stands still.
+    pub(super) is_free: bool,
 }
 
 /// What it does and works with in a sub-step.
@@ -66,7 +69,12 @@ pub(super) struct Course<'m> {
 impl Bounded<'_> {
     /// What solving it must not change.
     pub(super) fn limits(&self, bodies: &Bodies<'_>, joints: &[Joint], purse: &Purse<'_>) -> Limits {
-        let begun = Group::begun(bodies, self.rows).moving() + self.stored(joints, None, bodies.before[0]);
+        let strained = self.stored(joints, None, bodies.before[0]);
+        if !self.is_free {
+            let (moving, all) = (self.moving(bodies), self.strained(joints, None, bodies.before[0], f32::INFINITY));
+            return Limits { most: purse.budget.most_of(moving + strained, moving + all), whole: None };
+        }
+        let begun = Group::begun(bodies, self.rows).moving() + strained;
         Limits { most: purse.budget.most(begun), whole: Group::of(bodies, self.rows).whole() }
     }
 
@@ -78,6 +86,9 @@ impl Bounded<'_> {
         course: Course<'_>,
         purse: &mut Purse<'_>,
     ) {
+        if !self.is_free {
+            return purse.budget.keep(self.hang_within(limits.most, bodies, course), limits.most);
+        }
         let due = purse.owed.give_back(bodies, self.rows, limits.whole);
         let (most, Course { joints, before, work }) = (limits.most, course);
         let energy = |bodies: &Bodies<'_>, joints: &[Joint]| {
@@ -100,17 +111,23 @@ impl Bounded<'_> {
     }
 
     /// The way from a point to the next.
-    fn way(&self, number: usize, places: &[Vec3]) -> Vec3 {
+    pub(super) fn way(&self, number: usize, places: &[Vec3]) -> Vec3 {
         let [from, to] = [number, number + 1].map(|point| places[self.rows[point] as usize]);
         to - from
     }
 
     /// The energy of strain where its points are in these places \[J\]. What is stiffer than it takes to be brought to its shape in a
-    /// sub-step is taken for so stiff: of the rest of its strain no motion comes.
-    fn stored(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3]) -> f32 {
+    /// sub-step is taken for so stiff: of the rest of its strain no motion comes. Where something holds it, that is so of how it stretches; all of it
+    /// bends as one.
+    pub(super) fn stored(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3]) -> f32 {
+        self.strained(joints, turned, places, 0.5 * self.mass / (self.h * self.h))
+    }
+
+    /// The same, where edges are no stiffer than is shown \[N/m\].
+    fn strained(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3], shown: f32) -> f32 {
         let StrandParams { stretch, bending: [first, second], twisting, .. } = *self.params;
         let (mut sum, mut last) = (0.0, None);
-        let shown = 0.5 * self.mass / (self.h * self.h);
+        let shown_bent = if self.is_free { 0.5 * shown } else { f32::INFINITY };
         for (number, joint) in joints.iter().enumerate().take(self.rows.len() - 1) {
             let way = self.way(number, places);
             let stiff = stretch.map_or(f32::INFINITY, |stretch| stretch / joint.length);
@@ -118,10 +135,13 @@ impl Bounded<'_> {
             let long = length(way) - joint.length;
             let pulled = 0.5 * stiff * (long * long);
             sum += if pulled.is_finite() { pulled } else { 0.0 };
-            let own = (frame(joints, turned, number, way), joint.length);
+            // Of what is embedded nothing bends.
+            let is_embedded =
+                [number, number + 1].into_iter().all(|end| !(self.inverse_mass[self.rows[end] as usize] > 0.0));
+            let own = (frame(joints, turned, number, way), if is_embedded { 0.0 } else { joint.length });
             if let Some((turn, before)) = last.replace(own) {
                 let bent = strain(turn, own.0) - joint.rest;
-                let stiff = |stiffness: f32| min(stiffness / (before + own.1), 0.5 * shown * (before * own.1));
+                let stiff = |stiffness: f32| min(stiffness / (before + own.1), shown_bent * (before * own.1));
                 let moment = bent * Vec3::new(stiff(first), stiff(second), stiff(twisting));
                 let bent = dot(bent, moment);
                 sum += if bent.is_finite() { bent } else { 0.0 };
@@ -132,7 +152,7 @@ impl Bounded<'_> {
 }
 
 /// The frame of an edge that has got into this direction: from where it is, or from where it was, turned as a rigid body.
-fn frame(joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, number: usize, way: Vec3) -> Turn {
+pub(super) fn frame(joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, number: usize, way: Vec3) -> Turn {
     let from = match turned {
         Some((turn, before)) => turn.after(Turn(before[number])),
         None => Turn(joints[number].turn),

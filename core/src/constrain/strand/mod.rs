@@ -4,6 +4,7 @@ mod asks;
 mod band;
 mod bounded;
 mod frame;
+mod hung;
 mod joint;
 mod params;
 mod piece;
@@ -45,8 +46,9 @@ use piece::{EQUATIONS, Piece, Step, TURN, Writer, act};
 /// the material whatever the sub-steps. Single precision sets a limit: where points of mass m are l apart, bending is off by up to a
 /// share of 1e-6 E I h²/(m l³) in a sub-step h, less than 0.01 % for hair of 1 cm; longer edges and shorter sub-steps lessen it. The
 /// system has a narrow band and is solved directly, so that the time that it takes grows with the number of points alone; several
-/// strands are solved eight at once. Forces act along the directions of the sub-step's beginning, and both momenta of a strand that
-/// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps: what would be too much is taken from how it
+/// strands are solved eight at once: in one step of Newton's method and, where that turns no edge far, a second one. Forces act along the directions of
+/// the sub-step's beginning, and both momenta of a strand that
+/// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps, nor does one that hangs from what stands still: what would be too much is taken from how it
 /// deforms, where the strain of what is stiffer than it takes to be brought to its shape in a sub-step counts for no more than that. What swings
 /// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h. In a periodic room a free strand has to be shorter than half a side.
 ///
@@ -239,9 +241,12 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let mut piece = self.piece(bodies, strand, from, rows_of);
                 from = piece.first + piece.count;
                 let is_free = |&row: &u32| bodies.inverse_mass[row as usize] > 0.0;
-                piece.is_free = !piece.is_turned() && rows_of[..piece.count].iter().all(is_free);
+                let rows_of = &rows_of[..piece.count];
+                piece.is_free = !piece.is_turned() && rows_of.iter().all(is_free);
+                piece.is_hung = !piece.is_turned() && !piece.is_free && hangs(bodies, rows_of);
                 piece.whole = (piece.count == strand[1] - strand[0]).then_some(number);
-                if let Some(mut purse) = Purse::of(purses, number).filter(|_| !piece.is_free || piece.whole.is_none()) {
+                let is_kept = piece.is_left_alone() && piece.whole.is_some();
+                if let Some(mut purse) = Purse::of(purses, number).filter(|_| !is_kept) {
                     purse.forget();
                 }
                 if piece.count > 1 {
@@ -278,7 +283,11 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         let (mut masses, mut most_squared) = ([0.0; LANES], [0.0; LANES]);
         let points = |lane: usize| lane * longest..lane * longest + pieces[lane].count;
         let joints = |lane: usize| pieces[lane].first..pieces[lane].first + pieces[lane].count;
-        let bounded = |lane: usize, mass| Bounded { params: &self.params, rows: &rows[points(lane)], h: step.h, mass };
+        let inverse_mass = bodies.inverse_mass;
+        let bounded = |lane: usize, mass| {
+            let (rows, is_free) = (&rows[points(lane)], pieces[lane].is_free);
+            Bounded { params: &self.params, rows, inverse_mass, h: step.h, mass, is_free }
+        };
         for (lane, piece) in pieces.iter().enumerate() {
             let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &mut frames[points(lane)]);
             begun.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
@@ -297,8 +306,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         for (lane, piece) in pieces.iter().enumerate() {
             let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &frames[points(lane)]);
             joints.iter_mut().for_each(|joint| joint.tension = 0.0);
-            most_squared[lane] = most_again(&band, lane, bodies, rows);
+            let most = most_again(&band, lane, bodies, rows);
             let is_solved = act((&band, lane), piece, bodies, rows, joints, masses[lane]);
+            most_squared[lane] = if is_solved { most } else { 0.0 };
             bodies.report.effort.solved(1, 0.0, !is_solved);
             Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.ask(piece, joints, begun);
         }
@@ -336,6 +346,13 @@ where
         length(far - near) < LITTLE * length(to - from) && turn.abs() < LITTLE
     });
     if is_little { CLOSER * CLOSER * way_squared(band, lane, rows.len()) } else { 0.0 }
+}
+
+/// Tells whether all that are fixed of a piece stand still.
+fn hangs(bodies: &Bodies<'_>, rows: &[u32]) -> bool {
+    let (x, x0) = (&*bodies.position, bodies.before[0]);
+    let mut fixed = rows.iter().map(|&row| row as usize).filter(|&row| !(bodies.inverse_mass[row] > 0.0));
+    fixed.all(|row| bodies.velocity[row] == Vec3::ZERO && x[row] == x0[row])
 }
 
 /// The mean mass of those that move \[kg\]; one, if none does.

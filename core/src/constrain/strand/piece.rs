@@ -45,6 +45,8 @@ pub(super) struct Piece {
     pub(super) whole: Option<usize>,
     /// True if nothing holds it, and nothing turns its ends.
     pub(super) is_free: bool,
+    /// True if something holds it that stands still, and nothing turns its ends.
+    pub(super) is_hung: bool,
 }
 
 impl Piece {
@@ -53,9 +55,14 @@ impl Piece {
         self.held.into_iter().zip(self.turning).any(|(is_held, rate)| is_held && rate != 0.0)
     }
 
-    /// What is kept of its strand, if nothing holds it: of a part of one nothing is kept, which has words of its own while it is solved.
+    /// Tells whether nothing gives it energy or takes it but forces and itself.
+    pub(super) fn is_left_alone(&self) -> bool {
+        self.is_free || self.is_hung
+    }
+
+    /// What is kept of its strand, if it is left alone: of a part of one nothing is kept, which has words of its own while it is solved.
     pub(super) fn purse<'m>(&self, purses: &'m mut [u32], own: &'m mut [u32]) -> Option<Purse<'m>> {
-        if !self.is_free {
+        if !self.is_left_alone() {
             return None;
         }
         match self.whole {
@@ -77,9 +84,9 @@ impl Step<'_> {
         self.params.damping / self.h
     }
 
-    /// How far something of a stiffness gives way, × 1/h².
+    /// How far something of a stiffness gives way, × 1/h², without what damps it.
     fn softness(&self, stiffness: f32) -> f32 {
-        1.0 / (stiffness * (self.h * self.h) * (1.0 + self.lag()))
+        1.0 / (stiffness * (self.h * self.h))
     }
 }
 
@@ -129,16 +136,21 @@ where
         self.band.add(self.lane, row, column, more);
     }
 
-    /// How far an edge of this length gives way.
-    pub(super) fn edge_softness(&self, rest: f32, ends: [Point; 2]) -> f32 {
-        let soft = self.step.params.stretch.map_or(0.0, |stretch| rest * self.mass * self.step.softness(stretch));
-        max(soft, RIDGE * (ends[0].weight + ends[1].weight))
+    /// How far an edge of this length gives way, and over how many sub-steps it is damped: over no more than leave it as stiff as it is at rest, where
+    /// it could not be told how far it gives way.
+    pub(super) fn edge_softness(&self, rest: f32, ends: [Point; 2]) -> (f32, f32) {
+        let least = RIDGE * (ends[0].weight + ends[1].weight);
+        let Some(stretch) = self.step.params.stretch else { return (least, 0.0) };
+        let still = rest * self.mass * self.step.softness(stretch);
+        let soft = still / (1.0 + self.step.lag());
+        if soft >= least { (soft, self.step.lag()) } else { (least, max(still / least - 1.0, 0.0)) }
     }
 
     /// How far this length of a strand gives way to being bent about the two axes of its section, and twisted.
     pub(super) fn bend_softness(&self, share: f32) -> [f32; 3] {
         let StrandParams { bending: [first, second], twisting, .. } = *self.step.params;
-        [first, second, twisting].map(|stiffness| share * self.mass * self.step.softness(stiffness))
+        let soft = |stiffness| share * self.mass * self.step.softness(stiffness) / (1.0 + self.step.lag());
+        [first, second, twisting].map(soft)
     }
 
     /// Writes the equations of a piece but for what they ask for, and leaves in its joints the frames of its edges where the method has moved them.
@@ -199,7 +211,7 @@ where
         if embedded {
             return Some(edge);
         }
-        let (soft, tension) = (self.edge_softness(joint.length, ends), joint.tension);
+        let ((soft, _), tension) = (self.edge_softness(joint.length, ends), joint.tension);
         if !(soft < f32::INFINITY) {
             return Some(edge);
         }

@@ -1,0 +1,68 @@
+//! The energy of strands that hang from what stands still.
+//!
+//! An implicit step leaves no more energy than it begins with, whatever forces have done before. One that is worked out in one or two steps of
+//! Newton's method may, where a whip cracks or a wire between two hooks is plucked: that is taken out again.
+
+use super::bounded::{Bounded, Course, frame};
+use crate::constrain::Bodies;
+use crate::constrain::turn::Turn;
+use crate::math::{clamp, sqrt};
+
+/// How often the way of a sub-step is halved.
+const HALVINGS: u32 = 6;
+/// The least share of the speeds that is left without that.
+const LEAST: f32 = 0.5;
+
+impl Bounded<'_> {
+    /// The energy of all that moves \[J\].
+    pub(super) fn moving(&self, bodies: &Bodies<'_>) -> f32 {
+        let moving = self.rows.iter().map(|&row| row as usize).filter(|&row| bodies.inverse_mass[row] > 0.0);
+        moving.map(|row| 0.5 * bodies.mass[row] * bodies.velocity[row].length_squared()).sum()
+    }
+
+    /// Takes out of a strand that hangs what it has more than `most` \[J\]: out of its speeds; where that is most of them, it goes a part of
+    /// its way only, to where its strain leaves something to move with. Tells what it has then.
+    pub(super) fn hang_within(&self, most: f32, bodies: &mut Bodies<'_>, course: Course<'_>) -> f32 {
+        let Course { joints, before, .. } = course;
+        let (mut moving, mut strained) = (self.moving(bodies), self.stored(joints, None, bodies.position));
+        if moving + strained <= most {
+            return moving + strained;
+        }
+        if !(most - strained >= LEAST * LEAST * moving) {
+            let begun = Some((Turn::NONE, before));
+            self.halve(bodies, |bodies| self.moving(bodies) + self.stored(joints, begun, bodies.position) <= most);
+            for number in 0..self.rows.len() - 1 {
+                joints[number].turn = frame(joints, begun, number, self.way(number, bodies.position)).0;
+            }
+            (moving, strained) = (self.moving(bodies), self.stored(joints, None, bodies.position));
+        }
+        let share = sqrt(clamp((most - strained) / moving, 0.0, 1.0));
+        if share < 1.0 {
+            self.rows.iter().for_each(|&row| bodies.velocity[row as usize] *= share);
+            moving = self.moving(bodies);
+        }
+        moving + strained
+    }
+
+    /// Leaves as much of the ways from where all were as fits.
+    fn halve(&self, bodies: &mut Bodies<'_>, fits: impl Fn(&Bodies<'_>) -> bool) {
+        let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let next = 0.5 * (least + far);
+            self.go_back(bodies, next / now);
+            now = next;
+            *if fits(bodies) { &mut least } else { &mut far } = now;
+        }
+        self.go_back(bodies, least / now);
+    }
+
+    /// Leaves such a share of the ways from where all were.
+    fn go_back(&self, bodies: &mut Bodies<'_>, share: f32) {
+        for row in self.rows.iter().map(|&row| row as usize) {
+            let by = (bodies.before[0][row] - bodies.position[row]) * (1.0 - share);
+            if bodies.inverse_mass[row] > 0.0 && by.is_finite() {
+                bodies.shift(row, by);
+            }
+        }
+    }
+}
