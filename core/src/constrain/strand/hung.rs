@@ -6,12 +6,14 @@
 use super::bounded::{Bounded, Course, frame};
 use crate::constrain::Bodies;
 use crate::constrain::turn::Turn;
-use crate::math::{clamp, sqrt};
+use crate::math::{clamp, min, sqrt};
 
 /// How often the way of a sub-step is halved.
 const HALVINGS: u32 = 6;
 /// The least share of the speeds that is left without that.
 const LEAST: f32 = 0.5;
+/// The share of the strain's energy that may be rounding: what is wound up begins to writhe with far less.
+const ROUNDING: f32 = 1e-3;
 
 impl Bounded<'_> {
     /// The energy of all that moves \[J\].
@@ -25,6 +27,7 @@ impl Bounded<'_> {
     pub(super) fn hang_within(&self, most: f32, bodies: &mut Bodies<'_>, course: Course<'_>) -> f32 {
         let Course { joints, before, .. } = course;
         let (mut moving, mut strained) = (self.moving(bodies), self.stored(joints, None, bodies.position));
+        let most = most + ROUNDING * min(strained, most);
         if moving + strained <= most {
             return moving + strained;
         }
