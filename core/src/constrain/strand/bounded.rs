@@ -39,10 +39,12 @@ impl<'m> Purse<'m> {
     }
 }
 
-/// The most energy that a strand may have at the sub-step's end \[J\], and how it moves as a whole before it is solved.
+/// The most energy that a strand may have at the sub-step's end, that of the strain with which it begins \[J\], and how it moves as a whole before it is
+/// solved.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
     most: f32,
+    strained: f32,
     whole: Option<Whole>,
 }
 
@@ -72,10 +74,11 @@ impl Bounded<'_> {
         let strained = self.stored(joints, None, bodies.before[0]);
         if !self.is_free {
             let (moving, all) = (self.moving(bodies), self.strained(joints, None, bodies.before[0], f32::INFINITY));
-            return Limits { most: purse.budget.most_of(moving + strained, moving + all), whole: None };
+            let most = purse.budget.most_of(moving + strained, moving + all);
+            return Limits { most, strained, whole: None };
         }
         let begun = Group::begun(bodies, self.rows).moving() + strained;
-        Limits { most: purse.budget.most(begun), whole: Group::of(bodies, self.rows).whole() }
+        Limits { most: purse.budget.most(begun), strained, whole: Group::of(bodies, self.rows).whole() }
     }
 
     /// Gives it back what rounding has taken, takes out of it what is too much, and keeps what there is.
@@ -87,7 +90,8 @@ impl Bounded<'_> {
         purse: &mut Purse<'_>,
     ) {
         if !self.is_free {
-            return purse.budget.keep(self.hang_within(limits.most, bodies, course), limits.most);
+            let [now, most] = self.hang_within([limits.most, limits.strained], bodies, course);
+            return purse.budget.keep(now, most);
         }
         let due = purse.owed.give_back(bodies, self.rows, limits.whole);
         let (most, Course { joints, before, work }) = (limits.most, course);
@@ -127,7 +131,6 @@ impl Bounded<'_> {
     fn strained(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3], shown: f32) -> f32 {
         let StrandParams { stretch, bending: [first, second], twisting, .. } = *self.params;
         let (mut sum, mut last) = (0.0, None);
-        let shown_bent = if self.is_free { 0.5 * shown } else { f32::INFINITY };
         for (number, joint) in joints.iter().enumerate().take(self.rows.len() - 1) {
             let way = self.way(number, places);
             let stiff = stretch.map_or(f32::INFINITY, |stretch| stretch / joint.length);
@@ -141,7 +144,10 @@ impl Bounded<'_> {
             let own = (frame(joints, turned, number, way), if is_embedded { 0.0 } else { joint.length });
             if let Some((turn, before)) = last.replace(own) {
                 let bent = strain(turn, own.0) - joint.rest;
-                let stiff = |stiffness: f32| min(stiffness / (before + own.1), shown_bent * (before * own.1));
+                let stiff = |stiffness: f32| {
+                    let whole = stiffness / (before + own.1);
+                    if self.is_free { min(whole, 0.5 * shown * (before * own.1)) } else { whole }
+                };
                 let moment = bent * Vec3::new(stiff(first), stiff(second), stiff(twisting));
                 let bent = dot(bent, moment);
                 sum += if bent.is_finite() { bent } else { 0.0 };

@@ -6,14 +6,17 @@
 use super::bounded::{Bounded, Course, frame};
 use crate::constrain::Bodies;
 use crate::constrain::turn::Turn;
-use crate::math::{clamp, min, sqrt};
+use crate::math::{clamp, max, min, sqrt};
 
 /// How often the way of a sub-step is halved.
 const HALVINGS: u32 = 6;
 /// The least share of the speeds that is left without that.
 const LEAST: f32 = 0.5;
-/// The share of the strain's energy that may be rounding: what is wound up begins to writhe with far less.
-const ROUNDING: f32 = 1e-3;
+/// The share of the strain with which a sub-step begins that it may give beside: what is wound up begins to writhe with far less than two steps of Newton's
+/// method leave undecided of that. Such shares of shares add up to a third of what there may be.
+const UNDECIDED: f32 = 0.25;
+/// The share of it that is taken for rounding in a sub-step, and stays.
+const ROUNDING: f32 = 1e-5;
 
 impl Bounded<'_> {
     /// The energy of all that moves \[J\].
@@ -22,12 +25,16 @@ impl Bounded<'_> {
         moving.map(|row| 0.5 * bodies.mass[row] * bodies.velocity[row].length_squared()).sum()
     }
 
-    /// Takes out of a strand that hangs what it has more than `most` \[J\]: out of its speeds; where that is most of them, it goes a part of
-    /// its way only, to where its strain leaves something to move with. Tells what it has then.
-    pub(super) fn hang_within(&self, most: f32, bodies: &mut Bodies<'_>, course: Course<'_>) -> f32 {
+    /// Takes out of a strand that hangs, and began with a strain, what it has more than `most` and a share of that \[J\]: out of its speeds; where that is
+    /// most of them, it goes a part of its way only, to where its strain leaves something to move with. Tells what it has then, and may have from then on.
+    pub(super) fn hang_within(&self, [kept, begun]: [f32; 2], bodies: &mut Bodies<'_>, course: Course<'_>) -> [f32; 2] {
+        let now = self.hang_back(kept + UNDECIDED * begun, bodies, course);
+        [now, max(kept, min(now, kept + ROUNDING * begun))]
+    }
+
+    fn hang_back(&self, most: f32, bodies: &mut Bodies<'_>, course: Course<'_>) -> f32 {
         let Course { joints, before, .. } = course;
         let (mut moving, mut strained) = (self.moving(bodies), self.stored(joints, None, bodies.position));
-        let most = most + ROUNDING * min(strained, most);
         if moving + strained <= most {
             return moving + strained;
         }

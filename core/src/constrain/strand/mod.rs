@@ -243,7 +243,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let is_free = |&row: &u32| bodies.inverse_mass[row as usize] > 0.0;
                 let rows_of = &rows_of[..piece.count];
                 piece.is_free = !piece.is_turned() && rows_of.iter().all(is_free);
-                piece.is_hung = !piece.is_turned() && !piece.is_free && hangs(bodies, rows_of);
+                piece.is_hung = !piece.is_free && piece.turning == [0.0; 2] && hangs(bodies, rows_of);
                 piece.whole = (piece.count == strand[1] - strand[0]).then_some(number);
                 let is_kept = piece.is_left_alone() && piece.whole.is_some();
                 if let Some(mut purse) = Purse::of(purses, number).filter(|_| !is_kept) {
@@ -278,9 +278,8 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         let mut memory = memory;
         let work = take(&mut memory, bounded::WORDS * longest);
         let frames: &mut [[f32; 4]] = bytemuck::cast_slice_mut(take(&mut memory, bounded::FRAMES * longest * LANES));
-        let mut limits = [None; LANES];
         let mut band = Band::<LANES>::new(memory, most * EQUATIONS);
-        let (mut masses, mut most_squared) = ([0.0; LANES], [0.0; LANES]);
+        let (mut limits, mut masses, mut most_squared) = ([None; LANES], [0.0; LANES], [0.0; LANES]);
         let points = |lane: usize| lane * longest..lane * longest + pieces[lane].count;
         let joints = |lane: usize| pieces[lane].first..pieces[lane].first + pieces[lane].count;
         let inverse_mass = bodies.inverse_mass;
