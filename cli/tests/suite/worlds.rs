@@ -71,7 +71,7 @@ fn every_scene_runs_for_two_seconds_and_loses_nothing() {
         let mut system = System::with(Heap::new(model.size(file.run.capacity as usize)));
         system.start(&model.scene(), file.run.seed).expect("it fits");
         // In debug builds those whose hashes are known go on for longer there.
-        let seconds = if cfg!(debug_assertions) { 0.15 } else { 2.0 };
+        let seconds = if cfg!(debug_assertions) { 0.25 } else { 2.0 };
         let steps = (seconds / file.run.dt) as u64;
         for step in 1..=steps {
             let end = Time::from_seconds_f64(step as f64 * file.run.dt);
