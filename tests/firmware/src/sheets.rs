@@ -60,7 +60,7 @@ impl Memory {
     }
 }
 
-/// Calls `out` with the name of each and the hash after a second; of the strip, which takes longest, after half a second.
+/// Calls `out` with the name of each and the hash after a second; of the strip, which takes longest, after a third of one.
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     memory.places.iter_mut().enumerate().for_each(|(i, place)| *place = i as u32);
     fly(memory, out);
@@ -120,7 +120,7 @@ fn fold(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
         integrator: &Verlet,
         ..Scene::EMPTY
     };
-    out("layers", last(system, &scene, 30));
+    out("layers", last(system, &scene, 20));
 }
 
 /// The hash after so many 60ths of a second.

@@ -87,66 +87,46 @@ where
         Vec3::new(self.answer(lane, row), self.answer(lane, row + 1), self.answer(lane, row + 2))
     }
 
-    /// Solves all of them: L D Lᵀ, column by column, with the right side, and back.
+    /// Finds the factors L D Lᵀ of all of them, column by column.
+    pub(super) fn factor(&mut self) {
+        let Self { entries, count, .. } = self;
+        widest(
+            #[inline(always)]
+            || {
+                for first in 0..*count {
+                    eliminate(&mut entries[first * COLUMN..]);
+                }
+            },
+        );
+    }
+
+    /// Solves them for their right sides, once their factors are known.
     pub(super) fn solve(&mut self) {
         let Self { entries, right, count } = self;
-        let count = *count;
         widest(
             #[inline(always)]
             || {
-                for first in 0..count {
-                    eliminate(&mut entries[first * COLUMN..], &mut right[first..]);
+                for first in 0..*count {
+                    go_on(column(entries, first), &mut right[first..]);
                 }
-                substitute(entries, right, count);
-            },
-        );
-    }
-
-    /// Solves them for another right side, once they have been solved.
-    pub(super) fn solve_again(&mut self) {
-        let Self { entries, right, count } = self;
-        let count = *count;
-        widest(
-            #[inline(always)]
-            || {
-                for first in 0..count {
-                    let column: &[[f32; LANES]] = &entries[first * COLUMN..][..COLUMN];
-                    let (own, below) = right[first..].split_at_mut(1);
-                    for (factor, below) in column[1..].iter().zip(below) {
-                        for lane in 0..LANES {
-                            below[lane] -= factor[lane] * own[0][lane];
-                        }
-                    }
-                    for lane in 0..LANES {
-                        own[0][lane] *= 1.0 / column[0][lane];
-                    }
+                for first in (0..*count).rev() {
+                    go_back(column(entries, first), &mut right[first..]);
                 }
-                substitute(entries, right, count);
             },
         );
     }
 }
 
-/// Goes from the last equation back to the first, with what is known by then.
+/// What is kept of a column.
 #[inline(always)]
-fn substitute<const LANES: usize>(entries: &[[f32; LANES]], right: &mut [[f32; LANES]], count: usize) {
-    for first in (0..count).rev() {
-        let column: &[[f32; LANES]] = &entries[first * COLUMN..][..COLUMN];
-        let (own, below) = right[first..].split_at_mut(1);
-        for (factor, known) in column[1..].iter().zip(&*below) {
-            for ((own, factor), known) in own[0].iter_mut().zip(factor).zip(known) {
-                *own -= factor * known;
-            }
-        }
-    }
+fn column<const LANES: usize>(entries: &[[f32; LANES]], first: usize) -> &[[f32; LANES]] {
+    &entries[first * COLUMN..][..COLUMN]
 }
 
-/// Takes the first column out of the others, and its number out of the right side below; leaves the column of L in its place, and the
-/// number over the pivot.
+/// Takes the first column out of the others; leaves the column of L in its place and on the diagonal one over the pivot, which has its sign.
 #[inline(always)]
-fn eliminate<const LANES: usize>(entries: &mut [[f32; LANES]], right: &mut [[f32; LANES]]) {
+fn eliminate<const LANES: usize>(entries: &mut [[f32; LANES]]) {
     let (column, others) = entries.split_at_mut(COLUMN);
-    let (own, below) = right.split_at_mut(1);
     let pivot = column[0].map(|pivot| 1.0 / pivot);
     let full: [[f32; LANES]; COLUMN] = core::array::from_fn(|i| column[i]);
     for step in 1..COLUMN {
@@ -157,12 +137,32 @@ fn eliminate<const LANES: usize>(entries: &mut [[f32; LANES]], right: &mut [[f32
                 entry[lane] -= factor[lane] * from[lane];
             }
         }
-        for lane in 0..LANES {
-            below[step - 1][lane] -= factor[lane] * own[0][lane];
-        }
         column[step] = factor;
     }
+    column[0] = pivot;
+}
+
+/// Takes the first number out of the right side below it, and is left with that number over the pivot.
+#[inline(always)]
+fn go_on<const LANES: usize>(column: &[[f32; LANES]], right: &mut [[f32; LANES]]) {
+    let (own, below) = right.split_at_mut(1);
+    for (factor, below) in column[1..].iter().zip(below) {
+        for lane in 0..LANES {
+            below[lane] -= factor[lane] * own[0][lane];
+        }
+    }
     for lane in 0..LANES {
-        own[0][lane] *= pivot[lane];
+        own[0][lane] *= column[0][lane];
+    }
+}
+
+/// Takes what is known by then out of the first number.
+#[inline(always)]
+fn go_back<const LANES: usize>(column: &[[f32; LANES]], right: &mut [[f32; LANES]]) {
+    let (own, below) = right.split_at_mut(1);
+    for (factor, known) in column[1..].iter().zip(&*below) {
+        for lane in 0..LANES {
+            own[0][lane] -= factor[lane] * known[lane];
+        }
     }
 }

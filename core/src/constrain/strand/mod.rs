@@ -301,6 +301,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             writer.write(piece, joints);
             writer.ask(piece, joints, begun);
         }
+        band.factor();
         band.solve();
         for (lane, piece) in pieces.iter().enumerate() {
             let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &frames[points(lane)]);
@@ -311,7 +312,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             bodies.report.effort.solved(1, 0.0, !is_solved);
             Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] }.ask(piece, joints, begun);
         }
-        band.solve_again();
+        band.solve();
         for (lane, piece) in pieces.iter().enumerate() {
             let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &frames[points(lane)]);
             if way_squared(&band, lane, piece.count) < most_squared[lane] {
