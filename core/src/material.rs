@@ -278,9 +278,31 @@ fn lives(list: &dyn MaterialList) -> impl Iterator<Item = Life<'_>> {
     (0..list.count()).filter_map(|number| list.get(number)).map(|material| material.life)
 }
 
-/// The life of the material with a number as columns have it.
-pub(crate) fn life_of(list: &dyn MaterialList, material: u16) -> Option<Life<'_>> {
-    list.get(usize::from(material.checked_sub(1)?)).map(|material| material.life)
+/// Materials of a list that are at hand: a list makes each that it is asked for, which takes longer than to look at it, and rows often have the same few.
+pub(crate) struct Palette<'a> {
+    list: &'a dyn MaterialList,
+    /// Some of them with their numbers, each in its place.
+    at_hand: [Option<(u16, Material<'a>)>; AT_HAND],
+}
+
+/// How many materials are at hand: on chips, which have little room on the stack, one.
+const AT_HAND: usize = if cfg!(one_by_one) { 1 } else { 4 };
+
+impl<'a> Palette<'a> {
+    pub(crate) fn of(list: &'a dyn MaterialList) -> Self {
+        Self { list, at_hand: [None; AT_HAND] }
+    }
+
+    /// The material with a number as columns have it: one more than in the list, and zero for none, which is as plain as one beyond the last.
+    pub(crate) fn get(&mut self, number: u16) -> &Material<'a> {
+        let list = self.list;
+        let found = |index: u16| list.get(usize::from(index));
+        let place = &mut self.at_hand[usize::from(number) % AT_HAND];
+        if place.as_ref().is_some_and(|(own, _)| *own != number) {
+            *place = None;
+        }
+        &place.get_or_insert_with(|| (number, number.checked_sub(1).and_then(found).unwrap_or_default())).1
+    }
 }
 
 fn kept(list: &dyn MaterialList) -> usize {
@@ -296,15 +318,19 @@ fn age(list: &dyn MaterialList, [from, to]: [Time; 2], len: usize, layout: &Layo
     let Slices { born, dies, material, key, drag, mass, inverse_mass, kept, .. } = memory;
     let (drag, mass, inverse_mass) = (drag.own(), mass.own(), inverse_mass.own());
     let [own_drag, own_mass] = layout.ageing(kept);
+    let mut palette = Palette::of(list);
     for row in 0..len {
-        let Some(life) = life_of(list, material[row]).filter(Life::ages) else { continue };
+        let life = &palette.get(material[row]).life;
+        if !life.ages() {
+            continue;
+        }
         let first = if born[row] > from { born[row] } else { from };
         let now = Age::of(born[row], dies[row], to - (to - first).part(1, 2));
-        if let Some(curve) = life.drag {
+        if let Some(curve) = &life.drag {
             let factor = curve.value(1, now, Property::Drag.between(key[row]));
             drag[row] = remembered(&mut own_drag[row], drag[row]) * max(factor, 0.0);
         }
-        if let Some(curve) = life.mass {
+        if let Some(curve) = &life.mass {
             let factor = curve.value(1, now, Property::Mass.between(key[row]));
             mass[row] = remembered(&mut own_mass[row], mass[row]) * if factor > 0.0 { factor } else { 1.0 };
             // A fixed particle stays so.
@@ -328,9 +354,10 @@ fn carry(list: &dyn MaterialList, rows: &Floating<'_>, range: Range<usize>, grav
     if !floats(list) {
         return;
     }
+    let mut palette = Palette::of(list);
     for (total, row) in total.iter_mut().zip(range) {
-        let material = rows.material.get(row).copied().unwrap_or(0);
-        let Some(curve) = life_of(list, material).and_then(|life| life.buoyancy) else { continue };
+        let number = rows.material.get(row).copied().unwrap_or(0);
+        let Some(curve) = &palette.get(number).life.buoyancy else { continue };
         let age = Age::of(rows.born[row], rows.dies[row], rows.time);
         let share = curve.value(1, age, Property::Buoyancy.between(rows.key[row]));
         *total -= gravity * (rows.mass[row] * share);

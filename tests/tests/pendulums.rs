@@ -193,7 +193,7 @@ fn ropes_swing_in_their_time() {
 /// Wide swings of a heavy bob on a light rope: against the elliptic integral by the arithmetic-geometric mean.
 #[test]
 fn a_heavy_bob_swings_in_its_time() {
-    let (mut random, mut swung, mut failures) = (Random::new(2), 0, vec![]);
+    let (mut random, mut swung, mut cases, mut failures) = (Random::new(2), 0, 0, vec![]);
     for angle in [0.1f64, 0.8, 1.4] {
         let (mut a, mut b) = (1.0, (angle / 2.0).cos());
         for _ in 0..6 {
@@ -205,6 +205,9 @@ fn a_heavy_bob_swings_in_its_time() {
                 for gives in [0.0, 1e-4] {
                     for substeps in [1, 2, 5, 20] {
                         for method in [Method::Symplectic, Method::Verlet, Method::Rk4] {
+                            if !is_run(&mut cases) {
+                                continue;
+                            }
                             let hung = Hung { links, length, mass: 0.01 / links as f64, bob: 1.0, gives };
                             let period = hung.period(&vec![angle; links], &Pose::any(&mut random), method, substeps, 2);
                             let off = period / right - 1.0;
@@ -218,7 +221,7 @@ fn a_heavy_bob_swings_in_its_time() {
             }
         }
     }
-    assert!(failures.is_empty() && swung > 250, "{} of {swung} {failures:#?}", failures.len());
+    assert!(failures.is_empty() && swung > cases / 4, "{} of {swung} {failures:#?}", failures.len());
 }
 
 /// However heavy a bob is for its rope, and in however few sub-steps: it goes on to swing as wide as it did, its energy stays, and links are met.

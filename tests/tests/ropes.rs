@@ -2,7 +2,7 @@
 
 use pointmass::scene::SceneFile;
 use pointmass::{Constraint, Distance, Drag, Gravity, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, often, run, started};
+use pointmass_tests::{Random, f64s, gap, is_run, often, run, started};
 
 const G: f64 = 9.81;
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
@@ -380,6 +380,7 @@ fn nothing_breaks_a_rope() {
         &[at(0.0, true), Particle { mass: 1e-6, ..loose(0.1) }, Particle { mass: 1e4, ..loose(0.2) }, loose(0.3)],
         &[loose(0.0), loose(1e-20), loose(1e-7), loose(5.0)],
     ];
+    let mut cases = 0;
     for start in starts {
         for (length, tether, closed, compliance) in [
             (0.1f32, false, false, 0.0f32),
@@ -391,6 +392,9 @@ fn nothing_breaks_a_rope() {
             let rope = Rope { compliance, damping: 0.1, tether, closed, ..Rope::rigid([0, 1, 2, 3], [length]) };
             for method in Method::ALL {
                 for substeps in [1, 9] {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
                     let integrator = method.integrator();
                     let scene =
                         Scene { start, forces: &DOWN, constraints: &rope, substeps, integrator, ..Scene::EMPTY };

@@ -85,6 +85,10 @@ fn every_scene_runs_for_two_seconds_and_loses_nothing() {
         assert_eq!((caps.insufficient_memory, caps.graphs), (0, 0), "{path:?}");
         // A die that is thrown at others in a corner may touch more than there is room for, once in a while.
         assert!(caps.contacts <= 10, "{path:?}: {}", caps.contacts);
+        // A page that is drawn twice in a millisecond asks for a step of no time.
+        let hash = system.hash();
+        system.step(&model.scene(), Time::ZERO);
+        assert_eq!(system.hash(), hash, "{path:?}: something has changed in no time");
     }
 }
 

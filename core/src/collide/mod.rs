@@ -12,6 +12,7 @@ mod packet;
 mod path;
 mod paths;
 mod queue;
+mod rebound;
 mod slide;
 mod straight;
 mod sweep;

@@ -1,6 +1,6 @@
 //! Lines: springs by their strain, velocities, the edges of boxes. Trails are made of them as well.
 
-use super::{appearance, fill};
+use super::{Looks, fill};
 use crate::force::{Held, State};
 use crate::index::image_beside;
 use crate::math::{clamp, length};
@@ -125,9 +125,10 @@ pub fn strained(share: f32) -> Color {
 /// Writes the ways that particles would go on in so many seconds, in the order of rows and in their colours, as far as there is room;
 /// returns their number and how many were left out. They fade toward their ends.
 pub fn velocities(state: &State<'_>, seconds: f32, into: &mut [Line]) -> (usize, usize) {
+    let mut looks = Looks::of(state);
     let line = |row: usize| {
         let (from, way) = (state.position[row], state.velocity[row] * seconds);
-        let color = appearance(state, row).map_or(WHITE, |look| look.color);
+        let color = looks.color(row).unwrap_or(WHITE);
         let [red, green, blue, alpha] = color;
         Line { ends: [from, from + way], widths: [0.0; 2], colors: [color, [red, green, blue, alpha / 4]] }
     };

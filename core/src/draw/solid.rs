@@ -1,7 +1,7 @@
 //! Particles as shapes: where each stands and which way it points. Whoever draws has the shapes.
 
 use super::sprite::tumbled;
-use super::{Appearance, appearance, fill};
+use super::{Appearance, Looks, fill};
 use crate::force::State;
 use crate::material::Heading;
 use crate::math::{frame, sin_cos, unit};
@@ -31,9 +31,14 @@ impl Instance {
 /// The same bits on every machine.
 #[must_use]
 pub fn solid(state: &State<'_>, row: usize) -> Option<Instance> {
-    let number = state.material.get(row)?.checked_sub(1)?;
-    let heading = state.materials.get(usize::from(number))?.heading?;
-    let Appearance { diameter, color, rotation, .. } = appearance(state, row)?;
+    of_row(&mut Looks::of(state), row)
+}
+
+fn of_row(looks: &mut Looks<'_, '_>, row: usize) -> Option<Instance> {
+    let (number, material) = looks.material(row)?;
+    let heading = material.heading?;
+    let Appearance { diameter, color, rotation, .. } = looks.appearance(row)?;
+    let state = looks.state;
     let half = 0.5 * diameter;
     if !(half > 0.0) || color[3] == 0 {
         return None;
@@ -68,7 +73,8 @@ pub fn solid(state: &State<'_>, row: usize) -> Option<Instance> {
 /// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 pub fn solids(state: &State<'_>, into: &mut [Instance]) -> (usize, usize) {
-    fill((0..state.position.len()).filter_map(|row| solid(state, row)), into)
+    let mut looks = Looks::of(state);
+    fill((0..state.position.len()).filter_map(|row| of_row(&mut looks, row)), into)
 }
 
 /// The turn that takes y to an axis and turns by an angle about it, anticlockwise as seen from its tip. Without an axis it stays

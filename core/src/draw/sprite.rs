@@ -1,6 +1,6 @@
 //! Particles as pictures that stand in space: plain lists, for whatever draws them.
 
-use super::{Appearance, appearance, fill};
+use super::{Appearance, Looks, fill};
 use crate::force::State;
 use crate::material::{Blend, Facing, Property};
 use crate::math::{frame, max, sin_cos, sin_cos_turns, sqrt, unit};
@@ -53,9 +53,14 @@ pub struct View {
 /// The same bits on every machine.
 #[must_use]
 pub fn sprite(state: &State<'_>, row: usize, view: &View) -> Option<Sprite> {
-    let number = state.material.get(row)?.checked_sub(1)?;
-    let look = state.materials.get(usize::from(number))?.sprite?;
-    let Appearance { diameter, color, rotation, frame, .. } = appearance(state, row)?;
+    of_row(&mut Looks::of(state), row, view)
+}
+
+fn of_row(looks: &mut Looks<'_, '_>, row: usize, view: &View) -> Option<Sprite> {
+    let (number, material) = looks.material(row)?;
+    let look = material.sprite?;
+    let Appearance { diameter, color, rotation, frame, .. } = looks.appearance(row)?;
+    let state = looks.state;
     let (half, center) = (0.5 * diameter, state.position[row]);
     if !(half > 0.0) || color[3] == 0 {
         return None;
@@ -91,7 +96,8 @@ pub fn sprite(state: &State<'_>, row: usize, view: &View) -> Option<Sprite> {
 /// # Ok::<(), pointmass::InsufficientMemory>(())
 /// ```
 pub fn sprites(state: &State<'_>, view: &View, into: &mut [Sprite]) -> (usize, usize) {
-    fill((0..state.position.len()).filter_map(|row| sprite(state, row, view)), into)
+    let mut looks = Looks::of(state);
+    fill((0..state.position.len()).filter_map(|row| of_row(&mut looks, row, view)), into)
 }
 
 /// The order in which sprites have to be drawn, the farthest first, those at one distance in the order of the list: a radix sort, in

@@ -1,6 +1,6 @@
 //! Strands as thin lit curves.
 
-use super::{Line, appearance, fill};
+use super::{Line, Looks, fill};
 use crate::force::State;
 use crate::math::{dot, max, min, sqrt, unit};
 use crate::particles::{Color, WHITE};
@@ -75,6 +75,7 @@ impl StrandLight {
 pub fn strands(state: &State<'_>, lock: &Lock, light: &StrandLight, into: &mut [Line]) -> (usize, usize) {
     let segments = lock.points.saturating_sub(1);
     let numbers = (0..lock.count).flat_map(|strand| (0..segments).map(move |i| (strand, i)));
+    let mut looks = Looks::of(state);
     let line = |(strand, i): (u32, u32)| {
         let base = lock.first + strand * lock.points;
         let row = |i: u32| state.springs.row(base + i);
@@ -86,8 +87,8 @@ pub fn strands(state: &State<'_>, lock: &Lock, light: &StrandLight, into: &mut [
             place(rows[1]) - beside[0].map_or(place(rows[0]), place),
             beside[1].map_or(place(rows[1]), place) - place(rows[0]),
         ];
-        let color = |end: usize| {
-            let plain = appearance(state, rows[end]).map_or(WHITE, |look| look.color);
+        let mut color = |end: usize| {
+            let plain = looks.color(rows[end]).unwrap_or(WHITE);
             light.shade(plain, place(rows[end]), ways[end])
         };
         Some(Line { ends: rows.map(place), widths: [lock.width; 2], colors: [color(0), color(1)] })

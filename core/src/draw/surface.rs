@@ -1,6 +1,6 @@
 //! Surfaces between particles, such as cloth: smooth, and torn where its springs are.
 
-use super::appearance;
+use super::Looks;
 use crate::force::State;
 use crate::math::{length, unit};
 use crate::particles::{Color, Particle};
@@ -11,7 +11,8 @@ use glam::Vec3;
 pub struct Vertex {
     /// Its place \[m\].
     pub place: Vec3,
-    /// The unit normal of the surface there, the mean of the triangles around by their areas; zero where there are none.
+    /// The unit normal of the surface there, the mean of the triangles around by their areas; zero where there are none, or areas beyond
+    /// numbers.
     pub normal: Vec3,
     /// Its colour: red, green, blue in sRGB, and opacity.
     pub color: Color,
@@ -64,9 +65,10 @@ pub fn surface(
     let count = vertices.len().min(count as usize);
     let vertices = &mut vertices[..count];
     let row = |corner: u32| state.springs.row(first.checked_add(corner)?);
+    let mut looks = Looks::of(state);
     for (vertex, corner) in vertices.iter_mut().zip(0..) {
         *vertex = row(corner).map_or(Vertex::NONE, |row| {
-            let color = appearance(state, row).map_or([0; 4], |look| look.color);
+            let color = looks.color(row).unwrap_or([0; 4]);
             Vertex { place: state.position[row], normal: Vec3::ZERO, color }
         });
     }
@@ -85,7 +87,10 @@ pub fn surface(
         let normal = (b - a).cross(c - a);
         corners.iter().for_each(|&corner| vertices[corner as usize].normal += normal);
     }
-    vertices.iter_mut().for_each(|vertex| vertex.normal = unit(vertex.normal));
+    // The areas of what has exploded are beyond numbers.
+    vertices
+        .iter_mut()
+        .for_each(|vertex| vertex.normal = Some(unit(vertex.normal)).filter(|n| n.is_finite()).unwrap_or_default());
     (count, kept)
 }
 

@@ -40,7 +40,9 @@ impl Workspace<'_> {
         // In tiles those of one go through all sub-steps before those of the next, and who looks on would be told in that order. Forces tell of all at once.
         let told_alike = scene.pieces() == 1 && observer.attention() < Attention::Phases;
         let is_unheard = observer.attention() == Attention::Nothing;
-        if TILED && scene.is_local() && (is_unheard || told_alike && scene.telling(observer).is_none()) {
+        if dt == Time::ZERO {
+            // Nothing moves in no time, and what holds together would be divided by that.
+        } else if TILED && scene.is_local() && (is_unheard || told_alike && scene.telling(observer).is_none()) {
             self.tile_by_tile(scene, layout, span, old, report, observer);
         } else {
             self.phase_by_phase(scene, layout, span, old, report, observer);

@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::solids::Surfaces;
 use crate::instant::nanoseconds;
-use pointmass::draw::appearance;
+use pointmass::draw::Looks;
 use pointmass::force::Springs;
 use pointmass::{Color, Columns, Heap, Scene, System, Time, Vec3, WHITE};
 use serde::Serialize;
@@ -128,7 +128,8 @@ impl Frame {
         let mut order: Vec<usize> = (0..serial.len()).collect();
         order.sort_unstable_by_key(|&row| serial[row]);
         let state = system.state(scene);
-        let color = |&row: &usize| appearance(&state, row).map_or(WHITE, |look| look.color);
+        let mut looks = Looks::of(&state);
+        let color = |&row: &usize| looks.appearance(row).map_or(WHITE, |look| look.color);
         let colors: Vec<Color> = order.iter().map(color).collect();
         let columns = Rows { order: &order, system, scene }.columns(plan, &colors);
         let mut place = vec![0; order.len()];

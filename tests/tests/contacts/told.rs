@@ -8,7 +8,7 @@ use pointmass::{
     Attention, Emitter, Force, Gravity, Id, Impact, Method, Observer, Particle, Penalty, Phase, Scene, Time, Varied,
     Vec3,
 };
-use pointmass_tests::{Random, point, started};
+use pointmass_tests::{Random, is_run, point, started};
 use std::ops::Range;
 
 /// Keeps what it is told of.
@@ -118,6 +118,7 @@ const METHODS: [Method; 5] = [Method::Symplectic, Method::Verlet, Method::Midpoi
 #[test]
 fn observers_are_told_of_each_meeting_by_force_once_whatever_finds_it() {
     let walls = Cuboid { min: Vec3::splat(-1.0), max: Vec3::ONE };
+    let mut cases = 0;
     for (seed, (method, substeps)) in METHODS.into_iter().zip([1, 4, 2, 3, 5]).enumerate() {
         let start = gas(seed as u64, 60);
         let want = told(&start, (&walls, &()), method, substeps);
@@ -131,7 +132,7 @@ fn observers_are_told_of_each_meeting_by_force_once_whatever_finds_it() {
             assert_eq!(twins.len(), usize::from(!start[other.serial() as usize].fixed));
             assert!(twins.iter().all(|twin| twin.normal == -touch.normal && twin.closing == touch.closing));
         }
-        for structure in Structure::ALL {
+        for structure in Structure::ALL.iter().filter(|_| is_run(&mut cases)) {
             assert_eq!(told(&start, (&walls, structure), method, substeps), want, "{method}, {structure}");
         }
     }

@@ -290,9 +290,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         for (lane, piece) in pieces.iter().enumerate() {
             let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &mut frames[points(lane)]);
             begun.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
-            if rows.iter().any(|&row| !(bodies.inverse_mass[row as usize] > 0.0)) {
-                rows.iter().for_each(|&row| bodies.catch_up(row as usize));
-            }
+            catch_up_with_held(bodies, rows);
             masses[lane] = mean_mass(bodies, rows);
             limits[lane] = piece
                 .purse(purses, &mut [0; PURSE])
@@ -323,6 +321,13 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 bounded(lane, masses[lane]).keep_within(limits, bodies, course, &mut purse);
             }
         }
+    }
+}
+
+/// Lets a piece of which something is held begin where that is now.
+fn catch_up_with_held(bodies: &mut Bodies<'_>, rows: &[u32]) {
+    if rows.iter().any(|&row| !(bodies.inverse_mass[row as usize] > 0.0)) {
+        rows.iter().for_each(|&row| bodies.catch_up(row as usize));
     }
 }
 

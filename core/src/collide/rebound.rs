@@ -1,0 +1,224 @@
+//! What hits do to a particle on its way: it bounces, or comes to rest on the surface, along which it slides and with which it goes.
+
+use super::lead::Lead;
+use super::path::Path;
+use super::slide::Slide;
+use super::sweep::{LAIN, Meeting, RESTING, Sweep};
+use crate::force::Friction;
+use crate::material::{Mixed, on_surface};
+use crate::math::{along, aside, dot, is_zero, length, max, minus, plus, scaled, sqrt};
+use crate::observe::{Impact, Sliding};
+use crate::shape::{Collider, Hit, Ride, Segment};
+use crate::time::Time;
+use glam::Vec3;
+
+/// The largest number of times that a point beside a hit is sought farther back.
+const MAX_RETREATS: u32 = 12;
+
+/// A particle that a hit brings to rest on a surface.
+struct Landing {
+    /// Where it is set off to, and from when to when it goes on.
+    beside: Vec3,
+    during: [Time; 2],
+    /// How the surface moves there \[m/s\], and where it takes it, if it moves.
+    surface: Vec3,
+    ride: Option<Ride>,
+    /// The speed at which it parted from the surface before the hit \[m/s\], and the acceleration that presses it onto that \[m/s²\].
+    incoming: f32,
+    pressing: f32,
+    /// Its velocity along the surface, as seen from there, before friction and after it, and in the world after all \[m/s\].
+    came: Vec3,
+    slip: Vec3,
+    after: Vec3,
+    /// Its acceleration as seen from the surface, and in the world \[m/s²\].
+    drive: Vec3,
+    acceleration: Vec3,
+    friction: Friction,
+}
+
+impl<C: Collider + ?Sized> Sweep<'_, C> {
+    /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
+    /// braked by friction, the mean acceleration of the path so far for the time that is left.
+    ///
+    /// Apart, so that what it works out is off the stack when the next hit is sought.
+    #[inline(never)]
+    pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
+        self.report.hits += 1;
+        let Hit { normal, velocity: surface, material, .. } = meeting.hit;
+        let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
+        let during = [path.instant(meeting.time), path.during[1]];
+        let lead = self.lead(path, meeting.time, normal);
+        let mut acceleration = path.acceleration();
+        if let Some(lead) = &lead {
+            acceleration = plus(acceleration, lead.acceleration);
+        }
+        let (place, before) = (meeting.place, path.velocity(meeting.time));
+        let incoming = dot(minus(before, surface), normal);
+        // Should the velocity already point out, the path left and came back between two chords: it rests.
+        let outgoing = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
+        let beside = self.set_off(path, meeting, place);
+        // Whoever is set off from the surface has come there with the speed that is left so high.
+        let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
+        let ride = self.ride(&meeting.hit, beside, during);
+        let drive = ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration));
+        let pressing = -dot(drive, normal);
+        let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
+        let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
+        // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
+        let whole = match &ride {
+            Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
+            _ => Vec3::ZERO,
+        };
+        let surface = plus(surface, whole);
+        let came = along(minus(before, surface), normal, -incoming);
+        let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
+        let Self { id, row, mass, .. } = *self;
+        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(plus(surface, slip), normal, outgoing));
+        let mut told = [before, after];
+        self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing], &mut told);
+        if let Some(observer) = &mut self.observer {
+            let [before, after] = told;
+            let closing = if self.left.is_some() { max(-dot(minus(before, surface), normal), 0.0) } else { closing };
+            observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+        }
+        if !rests {
+            let mut onward = Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
+            self.lead_on(&lead, &mut onward, None);
+            return onward;
+        }
+        let landing = Landing {
+            beside,
+            during,
+            surface,
+            ride,
+            incoming,
+            pressing,
+            came,
+            slip,
+            after,
+            drive,
+            acceleration,
+            friction: mixed.friction,
+        };
+        self.stay(path, meeting, &lead, landing)
+    }
+
+    /// Answers with a hit the velocity that constraints have left, if they have: tells what it was and is. That of the way, which comes in and goes out
+    /// so fast, is the mean of the sub-step; what forces have changed since presses on the surface, or is taken off the rebound, as they go on
+    /// after it. A push that has brought it there and left no such velocity is no blow: it cannot be told from a force that has acted away from the surface, which then
+    /// leaves a rebound somewhat too slow.
+    #[cfg_attr(one_by_one, inline(never))]
+    fn answer_left(
+        &mut self,
+        hit: &Hit,
+        mixed: &Mixed,
+        surface: Vec3,
+        [incoming, outgoing]: [f32; 2],
+        told: &mut [Vec3; 2],
+    ) {
+        let Some(left) = &mut self.left else { return };
+        let relative = minus(**left, surface);
+        let closing = dot(relative, hit.normal);
+        let since = closing - incoming;
+        let leaving = match () {
+            () if !(since > 0.0) => max(outgoing + since, 0.0),
+            () if closing < 0.0 => -closing * mixed.elasticity,
+            () => closing,
+        };
+        let came = along(relative, hit.normal, -closing);
+        let slip = plus(came, mixed.friction.answer(came, leaving - closing));
+        let after = along(plus(surface, slip), hit.normal, leaving);
+        *told = [core::mem::replace(*left, after), after];
+    }
+
+    /// The way on of a particle that a hit brings to rest on a surface: along that and with it, for the time that is left.
+    #[inline(always)]
+    fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing) -> Path {
+        let Landing { beside, during, surface, ride, incoming, pressing, came, slip, after, .. } = landing;
+        if let (Some(left), Some(ride)) = (&mut self.left, &ride) {
+            **left = plus(**left, minus(ride.velocity[1], ride.velocity[0]));
+        }
+        let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
+        let drive = along(landing.drive, meeting.hit.normal, pressing);
+        let (way, end) = Slide { velocity: slip, drive, pressing, friction: landing.friction }.after(rest);
+        let stays = is_zero(slip) && is_zero(end);
+        let mut onward = if let Some(ride) = ride {
+            // A particle that falls from where it was set off to goes along the surface meanwhile, which friction would
+            // have kept it from.
+            let fell = -incoming / pressing;
+            let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
+            let crept = if lay { scaled(came, 0.5 * fell) } else { Vec3::ZERO };
+            Path {
+                x0: beside,
+                v0: after,
+                x1: minus(plus(ride.place, way), crept),
+                v1: plus(ride.velocity[1], end),
+                during,
+            }
+        } else {
+            let stays = stays && has_lain(path, meeting, place);
+            let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
+            Path { x0, v0: after, x1: plus(along(x0, surface, rest), way), v1: plus(surface, end), during }
+        };
+        let along = [drive, way, slip, end];
+        if let Some(observer) = &mut self.observer {
+            let world = [landing.acceleration, minus(onward.x1, onward.x0), onward.v0, onward.v1];
+            observer.slid(&Sliding { mass: self.mass, raised: minus(onward.x0, place), world, along });
+        }
+        self.lead_on(lead, &mut onward, Some(&along));
+        onward
+    }
+
+    /// Where the surface of a hit would take a particle beside it by the end of the path, if it moves.
+    fn ride(&self, hit: &Hit, beside: Vec3, during: [Time; 2]) -> Option<Ride> {
+        let below = along(beside, hit.normal, -(LAIN * hit.slack));
+        let seat = Segment { from: beside, to: below, radius: self.radius, during };
+        if is_zero(hit.velocity) { None } else { self.walls.ride(&seat) }
+    }
+
+    /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
+    /// way there is free; else as far back on the path as is free, at last where the chord begins, or where that is carried
+    /// to. A surface that moves takes what is back on the path along to the instant of the hit.
+    #[inline(never)]
+    fn set_off(&self, path: &Path, meeting: &Meeting, place: Vec3) -> Vec3 {
+        let Meeting { chord, hit, begun, time: s, .. } = meeting;
+        let now = path.instant(*s);
+        let span = (now - chord.during[0]).seconds();
+        let (moves, share) = (!is_zero(hit.velocity), max(s - begun, f32::MIN_POSITIVE));
+        let taken = |point: Vec3, time: f32| {
+            if moves { along(point, hit.velocity, span * ((s - time) / share)) } else { point }
+        };
+        let free = |segment: Segment| self.walls.first_hit(&segment).is_none();
+        let closing = max(dot(minus(hit.velocity, path.velocity(*s)), hit.normal), f32::MIN_POSITIVE);
+        let beside = along(place, hit.normal, 2.0 * hit.slack);
+        // As a fraction of the path, like all its instants.
+        let mut back = 2.0 * hit.slack / (closing * path.duration());
+        // At a rim or in a corner another surface may be nearer than the slack of this one.
+        for _ in 0..MAX_RETREATS {
+            let time = max(s - back, *begun);
+            let before = taken(path.at(time), time);
+            if free(Segment { to: before, during: [chord.during[0], now], ..*chord }) {
+                let aside = Segment { from: before, to: beside, during: [now; 2], ..*chord };
+                return if free(aside) { beside } else { before };
+            }
+            back *= 4.0;
+        }
+        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
+    }
+}
+
+/// Tells whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface.
+/// Falling onto it anew each step, it has not moved at all; else it would creep.
+fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
+    let (surface, elapsed) = (meeting.hit.velocity, path.duration() * meeting.time);
+    let near = LAIN * meeting.hit.slack;
+    let off = minus(along(path.x0, surface, elapsed), place);
+    dot(off, off) <= near * near && length(minus(path.v0, surface)) * elapsed <= near
+}
+
+/// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.
+fn slowed(speed: f32, work: f32) -> f32 {
+    let square = speed * speed + 2.0 * work;
+    // The change by itself, whose rounding is much less than that of the whole.
+    if square > 0.0 { speed + 2.0 * work / (speed + sqrt(square)) } else { 0.0 }
+}
