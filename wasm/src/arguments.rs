@@ -271,5 +271,10 @@ fn whole(value: &JsValue, most: f64) -> Whole {
 
 /// A value in a message.
 fn shown(value: &JsValue) -> String {
-    value.as_f64().map_or_else(|| named(value), |number| number.to_string())
+    let Some(number) = value.as_f64() else { return named(value) };
+    match unwritten(value) {
+        Some(name) => name.to_owned(),
+        None if number.abs() >= 1e21 => format!("{number:e}"),
+        None => number.to_string(),
+    }
 }
