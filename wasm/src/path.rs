@@ -1,4 +1,5 @@
-//! Where in an object something is. Its text is read, which nobody but this package has seen.
+//! Where in an object something is, by its text: nobody but this package has seen that. To read the text into a scene once more, by a reader that keeps
+//! account of paths, would take all that code a second time.
 
 /// What a place in a JSON text is in.
 enum Level<'t> {
