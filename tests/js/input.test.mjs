@@ -1,5 +1,6 @@
 // Whatever the package is given, it works or throws an Error with a sentence, and the next world computes what it should.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { afterEach, test } from "node:test";
 import init, { Files, World } from "../../target/npm/node.js";
 
@@ -20,6 +21,9 @@ function hash(...args) {
 }
 const expected = hash(JSON.stringify(scene));
 
+// A scene of the repository, as an object.
+const load = (name) => JSON.parse(readFileSync(new URL(`../../scenes/${name}.json`, import.meta.url), "utf8"));
+
 afterEach(() => assert.equal(hash(JSON.stringify(scene)), expected, "the package still works"));
 
 // A sentence, not the word of a trap.
@@ -38,16 +42,61 @@ test("a scene is an object or a text", () => {
   const circular = {};
   circular.self = circular;
   for (const other of [undefined, null, 7, NaN, true, 7n, [], [scene], Symbol("scene"), () => scene]) {
-    refuses(() => new World(other), /a scene has to be an object, or its text/);
+    refuses(() => new World(other), /^a scene has to be an object, or its text, not /);
   }
+  // What has no fields of its own would be an empty scene, without a word.
+  const revoked = Proxy.revocable({}, {});
+  revoked.revoke();
+  for (const [other, name] of [
+    [Promise.resolve(scene), "a Promise: await it"], [new Response("{}"), "a Response: await its json()"], [new Map(), "a Map"],
+    [new ArrayBuffer(8), "an ArrayBuffer"], [new Float32Array(3), "a Float32Array"], [new String("{}"), "a String"], [[scene], "an Array"],
+    [new (class Mine { run = {} })(), "a Mine"], [null, "null"], [undefined, "undefined"], [7, "a number"], [revoked.proxy, "an object"],
+  ]) {
+    assert.throws(() => new World(other), { message: `a scene has to be an object, or its text, not ${name}` });
+  }
+  for (const empty of ["", " \n", "\ufeff"]) refuses(() => new World(empty), /^the text is empty/);
+  assert.equal(hash(Object.assign(Object.create(null), scene)), expected);
+  assert.equal(hash(new (class Mine { toJSON() { return scene; } })()), expected);
   refuses(() => new World(circular), /the scene has no JSON/);
   refuses(() => new World({ run: { seed: 7n } }), /the scene has no JSON/);
-  refuses(() => new World({ toJSON: () => undefined }), /a text has to be a string|no JSON/);
+  for (const other of [undefined, null, 7, [], "particle 0 0 0"]) {
+    refuses(() => new World({ toJSON: () => other }), /the scene has no JSON/);
+  }
   refuses(() => new World({ toJSON() { throw 7; } }), /the scene has no JSON/);
-  refuses(() => new World({ particles: 7 }), /^scene:1:\d+: /);
-  refuses(() => new World({ particles: [{ position: [NaN, 0, 0] }] }), /^scene:1:\d+: /);
+  refuses(() => new World({ toJSON() { throw { get message() { throw 7; } }; } }), /the scene has no JSON/);
   refuses(() => new World("x".repeat(40 << 20)), /characters/);
   refuses(() => new World(`{"particles": [${"{},".repeat(4e6)}{}]}`), /not enough memory/);
+});
+
+test("errors in objects have paths", () => {
+  const shape = (form) => ({ scenery: [{ shape: { sphere: { center: [0, 0, 0], radius: 1 } } }, { shape: form }] });
+  for (const [other, message] of [
+    [{ particles: 7 }, "scene:particles: invalid type: integer `7`, expected a sequence"],
+    [{ particles: [{}, { position: [0, 0] }] }, /^scene:particles\[1\]\.position: invalid length 2/],
+    [{ particles: [{ mass: "heavy" }] }, /^scene:particles\[0\]\.mass: invalid type: string "heavy", expected a number$/],
+    [{ particles: [{ mass: -1 }] }, /^scene:particles\[0\]\.mass: has to be above zero/],
+    [{ particles: [{ position: [0, [1], 0] }] }, /^scene:particles\[0\]\.position\[1\]: /],
+    [{ particles: [{ weight: 1 }] }, /^scene:particles\[0\]\.weight: unknown field `weight`/],
+    [shape({ plane: { point: [0, 0], normal: [0, 1, 0] } }), /^scene:scenery\[1\]\.shape\.plane\.point: invalid length 2/],
+    [shape({ plane: { point: [0, 0, 0] } }), /^scene:scenery\[1\]\.shape\.plane: missing field `normal`/],
+    [{ about: 'a "{[\\', run: { dt: true } }, /^scene:run\.dt: /],
+    // JSON knows no NaN and would say null.
+    [{ particles: [{ position: [0, NaN, 0] }] }, "scene:particles[0].position[1]: invalid value: NaN, expected a number"],
+    [{ particles: [{ lifetime: -Infinity }] }, "scene:particles[0].lifetime: invalid value: -Infinity, expected a number"],
+    [{ springs: [{ ends: [0, 1], rest_length: 1, ks: 1, kd: 0, breaks_at: NaN }], particles: [{}, {}] }, /^scene:springs\[0\]\.breaks_at: invalid value: NaN/],
+  ]) assert.throws(() => new World(other), { message });
+  refuses(() => new World('{"particles": 7}'), /^scene:1:\d+: /);
+});
+
+test("scenes give cause to remarks", () => {
+  const old = { ...scene, emitters: [{ ...scene.emitters[0], speed: { mean: 5, variance: 1 }, elasticity: 2 }] };
+  const [name, odd, ...others] = new World(old).warnings;
+  assert.equal(name, "scene:emitters[0].speed: `variance` is called `half_width` now");
+  assert.match(odd, /^scene:emitters\[0\]\.elasticity: 2 is above 1/);
+  assert.deepEqual(others, []);
+  assert.match(new World(JSON.stringify(old, null, 1)).warnings[0], /^scene:\d+:\d+: `variance` is called `half_width` now$/);
+  assert.deepEqual(new World({ fabrics: [] }).warnings, ["scene: `fabrics` is called `cloths` now"]);
+  assert.deepEqual(new World(scene).warnings, []);
 });
 
 test("a seed is a number or a BigInt", () => {
@@ -94,23 +143,300 @@ test("fabrics fit into memory or are refused", () => {
 
 test("a step is a finite number of seconds", () => {
   const world = new World(scene);
-  for (const seconds of [Infinity, -Infinity, NaN, -1, undefined, "soon", {}]) {
+  const others = [Infinity, -Infinity, NaN, -1, undefined, null, "1", "soon", {}, [1], 1n, true, new Date(), Symbol("1"), new Number(1)];
+  for (const seconds of others) {
     refuses(() => world.step(seconds), /^step has to be given a finite number of seconds/);
     refuses(() => world.stepTo(seconds), /^stepTo has to be given a finite number of seconds/);
+    refuses(() => world.advance(seconds), /^advance has to be given a finite number of seconds/);
   }
-  refuses(() => world.step(1n), /BigInt/);
+  for (const most of [0, -1, 0.5, NaN, 2 ** 32, "8", {}]) refuses(() => world.advance(0, most), /^the most steps has to be a whole number from 1/);
+  assert.throws(() => world.step(-Infinity), { message: "step has to be given a finite number of seconds, zero or more, not -Infinity" });
+  for (const full of [0, -1, NaN, Infinity, 1e-300, 1e300, "1", {}, 1n]) {
+    refuses(() => world.springs(full), /^the full strain has to be a finite number above zero/);
+    refuses(() => world.links(full), /^the full strain has to be a finite number above zero/);
+  }
   assert.equal(world.time, 0);
   world.step(0);
-  for (const seconds of [1e-9, 1e3, 1e9, 1e12, Number.MAX_VALUE]) world.step(seconds);
+  for (const seconds of [1e-9, 1e3, 1e9]) world.step(seconds);
+  const time = world.time;
+  for (const seconds of [2 ** 32, 1e12, Number.MAX_VALUE]) {
+    refuses(() => world.step(seconds), /^step would reach the end of time/);
+    refuses(() => world.stepTo(seconds), /^stepTo would reach the end of time/);
+  }
+  assert.equal(world.time, time);
   assert.ok(world.count <= 100);
+  world.stepTo(2 ** 32 - 1e-3);
+  refuses(() => world.advance(1), /^advance would reach the end of time/);
   world.restart();
   for (let frame = 1; frame <= 120; frame++) world.stepTo(frame / 60);
   assert.equal(world.hash(), expected);
   world.stepTo(1);
   assert.equal(world.time, 2, "not back");
+  assert.equal(world.hash(), expected, "no step at all");
   world.free();
-  refuses(() => world.step(1), /null pointer/);
-  refuses(() => world.positions(), /null pointer/);
+});
+
+test("what is passed cannot free a world on the way", () => {
+  for (const method of ["step", "stepTo", "springs", "advance"]) {
+    const world = new World(load("net"));
+    refuses(() => world[method]({ valueOf() { world.free(); return 0.1; } }), /has to be/);
+    assert.equal(world.count, 169);
+    world.free();
+  }
+});
+
+test("exceptions of others leave the package as it was", () => {
+  const world = new World(scene);
+  world.step(1);
+  const boom = () => { throw new Error("boom"); };
+  for (const eye of [
+    { length: 3, get 0() { return boom(); } }, { get length() { return boom(); } }, new Proxy([1, 2, 3], { get: boom }),
+    { [Symbol.iterator]: boom }, { [Symbol.iterator]: () => ({ next: () => null }) }, { [Symbol.iterator]: () => ({ get next() { return boom(); } }) },
+    { length: 3, get 0() { world.step(1); return 0; }, 1: 0, 2: 0 },
+  ]) {
+    refuses(() => world.sprites(eye), /^eye has to be three finite numbers/);
+    refuses(() => world.sprites([0, 0, 9], eye), /^up has to be three finite numbers/);
+    refuses(() => world.strands(eye), /^eye has to be three finite numbers/);
+    world.step(0.1);
+  }
+  assert.equal(world.sprites({ length: 3, 0: 1, 1: 2, 2: 3 }).length, 0);
+  world.free();
+  const detached = new Float32Array(9);
+  structuredClone(detached.buffer, { transfer: [detached.buffer] });
+  class Throws extends Float32Array { get length() { return boom(); } }
+  class Lies extends Float32Array { get length() { return 9; } }
+  const corners = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]);
+  const files = new Files();
+  const face = new Uint32Array([0, 1, 2]);
+  files.addMesh("throws", new Throws(corners), face);
+  for (const other of [detached, Object.create(corners), Object.setPrototypeOf(new Float32Array(4), Lies.prototype), new Proxy(corners, { get: boom })]) {
+    refuses(() => files.addMesh("m", other, face), /^m: coordinates/);
+    files.addMesh("m", corners, face);
+  }
+  assert.equal(new World({ scenery: [{ shape: { mesh: "throws" } }] }, files).count, 0);
+  files.free();
+});
+
+test("what has been freed says so, and may be freed again", () => {
+  const world = new World(scene);
+  const files = new Files();
+  for (let i = 0; i < 3; i++) {
+    world.free();
+    files.free();
+    if (Symbol.dispose) world[Symbol.dispose]();
+  }
+  for (const name of ["step", "positions", "advance", "restart", "hash", "spawn"]) refuses(() => world[name](1), /^this World has been freed$/);
+  for (const name of ["count", "time", "dt", "warnings"]) refuses(() => world[name], /^this World has been freed$/);
+  refuses(() => files.addText("a", "b"), /^this Files has been freed$/);
+  const others = new Files();
+  refuses(() => World.prototype.step.call(others, 1), /^this has to be a World of pointmass$/);
+  refuses(() => World.prototype.step.call({ __wbg_ptr: 12345678 }, 1), /^this has to be a World of pointmass$/);
+});
+
+test("before init there is a sentence", async () => {
+  const pointmass = await import("../../target/npm/pointmass.js?unready");
+  for (const call of [() => new pointmass.World(scene), () => new pointmass.Files(), () => pointmass.version()]) {
+    refuses(call, /^pointmass is not loaded yet: call `await init\(\)` first/);
+  }
+});
+
+test("frames of any lengths make the scene's own steps", () => {
+  const world = new World({ ...scene, run: { ...scene.run, dt: 0.01 } });
+  assert.equal(world.dt, 0.01);
+  const at = {};
+  for (let step = 1; step <= 100; step++) {
+    world.stepTo(step * 0.01);
+    at[world.time] = world.hash();
+  }
+  const whole = world.hash();
+  // All of these sum up to a second.
+  const uneven = [0.1, 0.003, 0.007, 0.09, 0.05, 0, 0.0125, 0.0375, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1];
+  for (const frames of [Array(60).fill(1 / 60), Array(144).fill(1 / 144), Array(10).fill(0.1), uneven]) {
+    world.restart();
+    for (const elapsed of frames) {
+      const share = world.advance(elapsed);
+      assert.ok(share >= 0 && share <= 1);
+      assert.ok(world.time === 0 || at[world.time] === world.hash(), `at ${world.time}`);
+    }
+    assert.equal(world.hash(), whole);
+  }
+  // A hidden tab: ten steps are a tenth of a second, of the others nothing is left.
+  world.restart();
+  assert.ok(Math.abs(world.advance(3600.005) - 0.5) < 1e-3);
+  assert.ok(Math.abs(world.time - 0.1) < 1e-9);
+  assert.ok(world.advance(0.004, 1) > 0.89);
+  assert.ok(world.advance(0.5, 3) < 0.91);
+  assert.ok(Math.abs(world.time - 0.13) < 1e-9);
+  // Elsewhere in the meantime: the next step ends at the next multiple.
+  world.step(0.004);
+  world.advance(0.011, 1);
+  assert.ok(Math.abs(world.time - 0.14) < 1e-9);
+  world.advance(0.008);
+  world.restart();
+  assert.equal(world.advance(0), 0, "nothing is left over");
+  world.free();
+});
+
+test("a frame that lasts breaks nothing", () => {
+  for (const name of ["flag", "hundred_dice", "net"]) {
+    const world = new World(load(name));
+    for (const elapsed of [1 / 60, 1 / 60, 0.1, 0.3, 1 / 60]) world.advance(elapsed);
+    const farthest = world.positions().subarray(0, 3 * world.count).reduce((most, x) => Math.max(most, Math.abs(x)), 0);
+    assert.ok(farthest < 20, `${name}: ${farthest} m`);
+    world.free();
+  }
+});
+
+test("particles are put in and taken out", () => {
+  const world = new World({
+    particles: [{}],
+    materials: [{ diffuse: [1, 0, 0] }],
+    forces: [{ gravity: { acceleration: [0, -10, 0] } }],
+    contacts: { force: { stiffness: 1e4 } },
+  }, null, 3);
+  const id = world.spawn({ position: [1, 2, 3], velocity: new Float32Array([0, 1, 0]), radius: 0.5, mass: 2, material: 0 });
+  assert.deepEqual([id, world.count, [...world.ids()]], [1, 2, [0, 1]]);
+  assert.deepEqual([...world.positions().slice(3, 6), world.velocities()[4], world.radii()[1]], [1, 2, 3, 1, 0.5]);
+  assert.deepEqual([...world.colors()], [255, 255, 255, 255, 255, 0, 0, 255]);
+  assert.deepEqual([...world.materials()], [-1, 0]);
+  // It meets others as balls do, though the scene has none.
+  const other = world.spawn({ position: [1.5, 2, 3], radius: 0.5, color: [1, 2, 3, 4] });
+  for (let i = 0; i < 30; i++) world.advance(1 / 60);
+  assert.ok(world.positions()[6] - world.positions()[3] > 0.9, `${world.positions()[6] - world.positions()[3]}`);
+  assert.equal(world.spawn({}), undefined);
+  assert.equal(JSON.parse(world.report()).refused, 1);
+  assert.deepEqual([world.remove(id), world.remove(id), world.remove(99)], [true, false, false]);
+  assert.deepEqual([...world.ids()], [0, other]);
+  assert.equal(world.spawn({ lifetime: 0.5 }), 3);
+  for (let i = 0; i < 60; i++) world.advance(1 / 60);
+  assert.deepEqual([...world.ids()], [0, other]);
+  for (const [particle, pattern] of [
+    [undefined, /^a particle has to be an object, not undefined$/], [[], /not an Array$/], [Promise.resolve({}), /not a Promise: await it$/],
+    [{ mass: 0 }, /^particle\.mass: has to be above zero/], [{ position: [0, NaN, 0] }, /^particle\.position\[1\]: invalid value: NaN/],
+    [{ weight: 1 }, /^particle\.weight: unknown field `weight`/], [{ material: 1 }, /^particle\.material: 1 is out of range/],
+    [{ position: [0, 0] }, /^particle\.position: invalid length 2/], [{ toJSON() { world.free(); throw 7; } }, /has no JSON/],
+  ]) refuses(() => (world.__wbg_ptr ? world : new World({})).spawn(particle), pattern);
+  for (const id of [undefined, null, -1, 0.5, "0", {}]) refuses(() => new World({}).remove(id), /^an id has to be/);
+});
+
+test("each particle is drawn once, as the program draws it", () => {
+  const box = { form: { box: { min: [-1, -1, -1], max: [1, 1, 1] } } };
+  const world = new World({
+    materials: [{ size: 0.2, sprite: { picture: "puff" } }, { size: 2, shape: box }, { size: 0.1 }],
+    particles: [{ material: 0 }, { radius: 1, material: 2 }, { material: 1 }, {}, { color: [1, 2, 3, 0] }, { radius: 0.5 }],
+    boxes: [{ sides: [1, 1, 1], mass: 1, position: [5, 5, 5] }],
+    cloths: [{ form: { sheet: { corner: [5, 0, 0], sides: [[0, 0, 1], [1, 0, 0]], cells: [2, 2] } }, mass: 1, springs: { structural: { ks: 1 } } }],
+    strands: [{ form: { curve: [[0, 0, 0], [0, -1, 0]] }, segments: 4, radius: 1e-3, young: 1e6, density: 1000 }],
+  });
+  assert.ok(world.count > 6 + 9);
+  assert.deepEqual([...world.points()], [1, 3, 5]);
+  assert.deepEqual([...world.materials().slice(0, 6)], [0, 2, 1, -1, -1, -1]);
+  world.free();
+  const campfire = new World(load("campfire"));
+  for (let i = 0; i < 60; i++) campfire.advance(1 / 60);
+  const [points, sprites] = [campfire.points().length, campfire.sprites([0, 1, 5]).length / 16];
+  assert.ok(points > 10 && sprites > 10 && points + sprites <= campfire.count, `${points} + ${sprites} of ${campfire.count}`);
+  campfire.free();
+});
+
+test("links of constraints are lines", () => {
+  const chain = new World(load("chain"));
+  assert.equal(chain.springs().length, 0);
+  assert.equal(chain.links().length, 26 * 16);
+  const [x, y, z, u, v, w] = chain.links();
+  const [first, second] = [[...chain.positions().slice(0, 3)], [...chain.positions().slice(3, 6)]];
+  assert.deepEqual([[x, y, z], [u, v, w]], [first, second]);
+  chain.free();
+  // The segments of ropes are curves.
+  const rope = new World(load("tied"));
+  assert.equal(rope.links().length, 0);
+  assert.ok(rope.strands([0, 0, 9]).length > 0);
+  rope.free();
+});
+
+// The package once more, in a memory of so many pages of 64 KiB: the module's section 5 says how many it may have.
+async function cramped(pages) {
+  const bytes = readFileSync(new URL("../../target/npm/pointmass_bg.wasm", import.meta.url));
+  const leb = (number) => (number < 128 ? [number] : [(number % 128) + 128, ...leb(Math.floor(number / 128))]);
+  const number = (at) => (bytes[at] < 128 ? [bytes[at], at + 1] : ((rest) => [bytes[at] - 128 + 128 * rest[0], rest[1]])(number(at + 1)));
+  for (let at = 8; at < bytes.length; ) {
+    const [size, begin] = number(at + 1);
+    if (bytes[at] === 5) {
+      const [least] = number(begin + 2);
+      const section = [1, 1, ...leb(least), ...leb(pages)];
+      const module = Buffer.concat([bytes.subarray(0, at), Buffer.from([5, section.length, ...section]), bytes.subarray(begin + size)]);
+      const pointmass = await import("../../target/npm/pointmass.js?cramped");
+      pointmass.initSync({ module });
+      return pointmass;
+    }
+    at = begin + size;
+  }
+  assert.fail("the module has no memory");
+}
+
+test("whatever finds no memory is refused, and goes on when there is some", async () => {
+  const { World, Files } = await cramped(2048);
+  const leaves = { ...scene, run: { capacity: 5000 }, materials: [{ size: 1, sprite: { picture: "leaf" }, trail: { seconds: 1 } }] };
+  leaves.emitters = [{ ...scene.emitters[0], rate: 1e5, material: 0 }];
+  const worlds = [new World(leaves), new World(load("flag")), new World(load("hundred_dice")), new World(load("chain"))];
+  for (const world of worlds) world.advance(0.05);
+  const files = new Files();
+  const kept = [];
+  for (let capacity = 1e6; capacity >= 1; ) {
+    try {
+      kept.push(new World({}, null, capacity));
+    } catch (error) {
+      assert.match(error.message, /not enough memory/);
+      capacity = Math.floor(capacity / 2);
+    }
+  }
+  // Texts fill what is too small for a world.
+  const filling = new Files();
+  for (let length = 1e6; length >= 1; ) {
+    try {
+      for (let i = 0; ; i++) filling.addText(`${length} ${i}`, "x".repeat(length));
+    } catch (error) {
+      assert.match(error.message, /not enough memory/);
+      length = Math.floor(length / 2);
+    }
+  }
+  let refused = [];
+  const tried = (action) => {
+    try {
+      action();
+    } catch (error) {
+      assert.ok(!(error instanceof WebAssembly.RuntimeError), error.stack);
+      assert.match(error.message, /not enough memory/);
+      refused.push(error.message);
+    }
+  };
+  const lists = ["colors", "looks", "ids", "materials", "points", "trails", "shapes", "surfaces", "springs", "links", "boxes", "hash", "report"];
+  const use = (world) => {
+    for (const list of lists) tried(() => world[list]());
+    tried(() => world.sprites([0, 1, 5]));
+    tried(() => world.strands([0, 1, 5]));
+    tried(() => world.warnings);
+    tried(() => world.spawn({}));
+    tried(() => world.restart());
+    tried(() => world.advance(1 / 60));
+  };
+  const all = () => {
+    worlds.forEach(use);
+    tried(() => files.addText("text", "y".repeat(1e6)));
+    tried(() => files.addMesh("mesh", new Float32Array(9e4), new Uint32Array(9e4)));
+    tried(() => kept.push(new World({ particles: Array(1e4).fill({}) })));
+    tried(() => new Files());
+    refuses(() => worlds[0].custom("x".repeat(3e7)), /may have|not enough memory/);
+  };
+  all();
+  assert.ok(refused.length > 20, `${refused}`);
+  for (const world of kept.splice(0)) world.free();
+  filling.free();
+  refused = [];
+  all();
+  assert.deepEqual(refused, []);
+  for (const world of [...worlds, ...kept]) world.free();
+  files.free();
 });
 
 test("files are given to as many worlds as one likes, each for what it is", () => {
@@ -154,7 +480,10 @@ test("columns of a user's own are views", () => {
   world.free();
 });
 
-test("views cover the capacity and outlive steps", () => {
+test("views cover the capacity and outlive steps", async () => {
+  // Once more, with memory that nobody has made grow.
+  const { World, initSync } = await import("../../target/npm/pointmass.js?views");
+  initSync({ module: readFileSync(new URL("../../target/npm/pointmass_bg.wasm", import.meta.url)) });
   const world = new World(scene, null, 300);
   const [positions, velocities, radii] = [world.positions(), world.velocities(), world.radii()];
   assert.deepEqual([positions.length, velocities.length, radii.length], [900, 900, 300]);

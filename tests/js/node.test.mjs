@@ -41,3 +41,12 @@ test("declares the types of what it exports", () => {
   assert.match(types, /positions\(\): Float32Array;/);
   assert.match(types, /radii\(\): Float32Array;/);
 });
+
+test("says for whom it is", () => {
+  const { engines, repository, keywords, files } = JSON.parse(readFileSync(join(built, "package.json"), "utf8"));
+  assert.deepEqual([engines.node, repository.type, keywords.includes("particles")], [">=20", "git", true]);
+  assert.ok(files.includes("README.md"));
+  for (const readme of [join(built, "README.md"), join(built, "../../README.md")]) {
+    assert.match(readFileSync(readme, "utf8"), /Chrome 96, Firefox 89, Safari 16\.4, Node 20/);
+  }
+});

@@ -1,5 +1,5 @@
 // A program against the package's types: it has to compile, and what is marked must not.
-import init, { Files, World, version } from "pointmass";
+import init, { Files, World, version, type Particle } from "pointmass";
 
 export async function main(draw: (positions: Float32Array, count: number) => void): Promise<string> {
   await init();
@@ -15,12 +15,18 @@ export async function main(draw: (positions: Float32Array, count: number) => voi
   for (const world of worlds) {
     world.step(1 / 60);
     world.stepTo(1);
-    world.restart();
+    const share: number = world.advance(1 / 60) + world.advance(world.dt, 4);
+    const drop: Particle = { position: [0, 1, 0], radius: 0.1, color: [255, 0, 0, share > 1 ? 0 : 255] };
+    const id: number | undefined = world.spawn(drop);
+    const gone: boolean = id !== undefined && world.remove(id);
+    if (gone) world.restart();
     draw(world.positions(), world.count);
     draw(world.velocities(), world.capacity);
     draw(world.radii(), world.time);
     if (world.count > 5) draw(world.custom("heat"), world.count);
-    const lists: Float32Array[] = [world.sprites([0, 1, 9]), world.sprites(new Float32Array(3), [0, 1, 0]), world.shapes(), world.boxes(), world.trails(), world.surfaces(), world.strands([0, 1, 9])];
+    const lists: Float32Array[] = [world.sprites([0, 1, 9]), world.sprites(new Float32Array(3), [0, 1, 0]), world.shapes(), world.boxes(), world.trails(), world.surfaces(), world.strands([0, 1, 9]), world.links(), world.links(0.5)];
+    const [rows, materials]: [Uint32Array, Int32Array] = [world.points(), world.materials()];
+    draw(new Float32Array(rows.length), materials.length);
     draw(world.springs(), lists.length + world.springs(0.5).length);
     const [colors, ids]: [Uint8Array, Uint32Array] = [world.colors(), world.ids()];
     const said: string[] = [world.hash(), world.report(), ...world.warnings];
@@ -29,6 +35,10 @@ export async function main(draw: (positions: Float32Array, count: number) => voi
   }
   // @ts-expect-error: a number is no scene.
   new World(7);
+  // @ts-expect-error: seconds are a number.
+  worlds[0]?.step("1");
+  // @ts-expect-error: a particle has no weight.
+  worlds[0]?.spawn({ weight: 1 });
   // @ts-expect-error: a capacity is a number.
   new World({}, files, "10");
   return version();

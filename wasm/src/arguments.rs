@@ -1,7 +1,7 @@
-//! Arguments that JavaScript passes, checked: they may be anything.
+//! Arguments that JavaScript passes, checked: they may be anything, and reading them may run anything. Whatever is thrown then is caught here.
 
 use crate::files::{Files, long};
-use js_sys::{BigInt, JSON, JsString};
+use js_sys::{BigInt, Function, JSON, JsString, Reflect};
 use pointmass::{Time, Vec3};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
@@ -13,26 +13,123 @@ extern "C" {
 
     #[wasm_bindgen(method, catch)]
     fn clone(this: &JsFiles) -> Result<Files, JsValue>;
+
+    /// `Array.from`, which may meet anything on its way.
+    #[wasm_bindgen(js_namespace = Array, js_name = from, catch)]
+    fn list_of(values: &JsValue) -> Result<JsValue, JsValue>;
 }
 
-/// The text of a scene: the text itself, or that of an object.
+/// A scene as it was given.
+pub(crate) enum Given {
+    /// A text, JSON or `.scn`.
+    Text(String),
+    /// An object, as JSON in one line.
+    Object(String),
+}
+
+/// A scene that was given: a text, or an object.
 ///
 /// # Errors
-/// If it is neither, or has no text.
-pub(crate) fn text(scene: &JsValue) -> Result<String, JsError> {
+/// If it is neither, is empty, or has no text.
+pub(crate) fn scene(scene: &JsValue) -> Result<Given, JsError> {
     if let Some(text) = scene.dyn_ref::<JsString>() {
-        return long(text);
+        let text = long(text)?;
+        if text.trim_start_matches('\u{feff}').trim().is_empty() {
+            return Err(JsError::new("the text is empty: a scene is an object, or its text"));
+        }
+        return Ok(Given::Text(text));
     }
-    if !scene.is_object() || js_sys::Array::is_array(scene) {
-        return Err(JsError::new("a scene has to be an object, or its text"));
+    if !is_plain(scene) {
+        return Err(JsError::new(&format!("a scene has to be an object, or its text, not {}", named(scene))));
     }
-    let text = JSON::stringify(scene).map_err(|error| {
-        let why = error.dyn_ref::<js_sys::Error>().and_then(|error| JsValue::from(error.message()).as_string());
+    json(scene, "scene").map(Given::Object)
+}
+
+/// A particle that was given, as JSON in one line.
+///
+/// # Errors
+/// If it is no object, or has no text.
+pub(crate) fn particle(particle: &JsValue) -> Result<String, JsError> {
+    if !is_plain(particle) {
+        return Err(JsError::new(&format!("a particle has to be an object, not {}", named(particle))));
+    }
+    json(particle, "particle")
+}
+
+/// A property of a value, if it has that and it can be read.
+fn property(value: &JsValue, name: &str) -> Option<JsValue> {
+    let value = value.is_object().then_some(value)?;
+    Reflect::get(value, &name.into()).ok()
+}
+
+/// Tells whether a value is an object that says what it is by its fields, or by `toJSON`: a promise, say, would be an object without fields.
+fn is_plain(value: &JsValue) -> bool {
+    if !value.is_object() {
+        return false;
+    }
+    let parent = |of: &JsValue| Reflect::get_prototype_of(of).map(JsValue::from);
+    // Objects of other windows have an `Object.prototype` of their own, which has no prototype either.
+    let is_top = parent(value).is_ok_and(|kind| kind.is_null() || parent(&kind).is_ok_and(|top| top.is_null()));
+    is_top || property(value, "toJSON").is_some_and(|method| method.is_function())
+}
+
+/// The JSON of an object in one line: typed arrays as lists, and numbers that JSON does not know as strings of their names.
+///
+/// # Errors
+/// If it has none, or that is no object.
+fn json(object: &JsValue, what: &str) -> Result<String, JsError> {
+    let refuse = |why: &str| JsError::new(&format!("the {what} has no JSON: {why}"));
+    let thrown = |error: JsValue| {
+        let why = property(&error, "message").and_then(|why| why.as_string());
         // Engines draw a picture of what is circular, on further lines.
-        let why = why.as_deref().and_then(|why| why.lines().next()).unwrap_or("it cannot be written");
-        JsError::new(&format!("the scene has no JSON: {why}"))
-    })?;
-    long(&text)
+        refuse(why.as_deref().and_then(|why| why.lines().next()).unwrap_or("it cannot be written"))
+    };
+    let text = |text: JsString| if text.is_string() { long(&text) } else { Err(refuse("it is not to be written")) };
+    let mut written = text(JSON::stringify(object).map_err(thrown)?)?;
+    // JSON has no NaN and would say null, which may mean something else, and of a typed array would make an object.
+    if ["null", "{\"0\":"].iter().any(|sign| written.contains(sign)) {
+        let replace = &mut |_: JsString, value: JsValue| Ok(Some(writable(value)));
+        written = text(JSON::stringify_with_replacer_func(object, replace, None).map_err(thrown)?)?;
+    }
+    if written.starts_with('{') { Ok(written) } else { Err(refuse("its toJSON gives no object")) }
+}
+
+/// Numbers that JSON does not know, by name.
+pub(crate) const UNWRITTEN: [&str; 3] = ["NaN", "Infinity", "-Infinity"];
+
+/// A value as it is to be written.
+fn writable(value: JsValue) -> JsValue {
+    if js_sys::ArrayBuffer::is_view(&value) {
+        return list_of(&value).unwrap_or(value);
+    }
+    unwritten(&value).map_or(value, JsValue::from_str)
+}
+
+/// The name of a number that JSON does not know.
+fn unwritten(value: &JsValue) -> Option<&'static str> {
+    let number = value.as_f64().filter(|number| !number.is_finite())?;
+    let kind = if number.is_nan() { 0 } else { 1 + usize::from(number < 0.0) };
+    Some(UNWRITTEN[kind])
+}
+
+/// What a value is, in a message, and what to do about it.
+fn named(value: &JsValue) -> String {
+    const LONGEST: usize = 60;
+    if value.is_null() || value.is_undefined() {
+        return if value.is_null() { "null" } else { "undefined" }.to_owned();
+    }
+    let class = property(value, "constructor").filter(JsValue::is_function);
+    let class = class.and_then(|class| Reflect::get(&class, &"name".into()).ok()).and_then(|name| name.as_string());
+    let class = class.filter(|name| (1..=LONGEST).contains(&name.len()));
+    let name = class.unwrap_or_else(|| value.js_typeof().as_string().unwrap_or_default());
+    let article = if name.starts_with(['A', 'E', 'I', 'O', 'U', 'a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    let has = |method: &str| property(value, method).is_some_and(|method| method.is_instance_of::<Function>());
+    let hint = match () {
+        () if has("then") => ": await it",
+        () if has("json") => ": await its json()",
+        () => "",
+    };
+    format!("{article} {name}{hint}")
 }
 
 /// A copy of the files that were given, if any were.
@@ -52,10 +149,13 @@ pub(crate) fn files(files: &JsValue) -> Result<Files, JsError> {
 /// # Errors
 /// If it is something else, or they are not finite.
 pub(crate) fn place(name: &str, value: &JsValue) -> Result<Vec3, JsError> {
-    let numbers = js_sys::try_iter(value).ok().flatten().map(|list| list.take(4).map(|n| n.ok()?.as_f64()));
-    let numbers: Option<Vec<f32>> = numbers.and_then(|list| list.map(|n| n.map(|n| n as f32)).collect());
-    let place = numbers.and_then(|list| <[f32; 3]>::try_from(list).ok()).map(Vec3::from_array);
-    place
+    let number = |key: JsValue| Reflect::get(value, &key).ok()?.as_f64();
+    let three = || {
+        let length = value.is_object().then(|| number("length".into())).flatten()?;
+        let [x, y, z] = [0, 1, 2].map(|i| (length == 3.0).then(|| number(i.into())).flatten());
+        Some(Vec3::new(x? as f32, y? as f32, z? as f32))
+    };
+    three()
         .filter(|place| place.is_finite())
         .ok_or_else(|| JsError::new(&format!("{name} has to be three finite numbers")))
 }
@@ -65,14 +165,35 @@ pub(crate) fn place(name: &str, value: &JsValue) -> Result<Vec3, JsError> {
 /// # Errors
 /// If it is no whole number, or too large.
 pub(crate) fn capacity(capacity: &JsValue) -> Result<Option<u32>, JsError> {
-    const MOST: f64 = u32::MAX as f64;
-    match whole(capacity, MOST) {
+    whole_number("the capacity", 0, capacity)
+}
+
+/// The most steps of a frame, if that is said.
+///
+/// # Errors
+/// If it is no whole number above zero, or too large.
+pub(crate) fn most(most: &JsValue) -> Result<Option<u32>, JsError> {
+    whole_number("the most steps", 1, most)
+}
+
+/// The id of a particle.
+///
+/// # Errors
+/// If it is no whole number, or too large.
+pub(crate) fn id(id: &JsValue) -> Result<u32, JsError> {
+    let number = whole_number("an id", 0, id)?;
+    number.ok_or_else(|| JsError::new(&format!("an id has to be a number out of ids(), not {}", shown(id))))
+}
+
+fn whole_number(what: &str, least: u32, value: &JsValue) -> Result<Option<u32>, JsError> {
+    const MOST: u32 = u32::MAX;
+    match whole(value, f64::from(MOST)) {
         Whole::Absent => Ok(None),
-        Whole::Number(number) => Ok(Some(number as u32)),
-        Whole::Other => Err(JsError::new(&format!(
-            "the capacity has to be a whole number from 0 to {MOST}, not {}",
-            shown(capacity)
-        ))),
+        Whole::Number(number) if number >= f64::from(least) => Ok(Some(number as u32)),
+        _ => {
+            let shown = shown(value);
+            Err(JsError::new(&format!("{what} has to be a whole number from {least} to {MOST}, not {shown}")))
+        }
     }
 }
 
@@ -96,15 +217,41 @@ pub(crate) fn seed(seed: &JsValue) -> Result<Option<u64>, JsError> {
     )))
 }
 
-/// An instant, or a span of time.
+/// A span of time, or an instant \[s\]. A number alone will do: what else becomes one may run anything on the way, and hardly means it.
 ///
 /// # Errors
 /// If it is no finite number, or below zero.
-pub(crate) fn seconds(what: &str, seconds: f64) -> Result<Time, JsError> {
-    if (0.0..f64::INFINITY).contains(&seconds) {
+pub(crate) fn seconds(what: &str, value: &JsValue) -> Result<f64, JsError> {
+    let seconds = value.as_f64().filter(|seconds| (0.0..f64::INFINITY).contains(seconds));
+    seconds.ok_or_else(|| {
+        let shown = shown(value);
+        JsError::new(&format!("{what} has to be given a finite number of seconds, zero or more, not {shown}"))
+    })
+}
+
+/// An instant, of seconds that are not below zero.
+///
+/// # Errors
+/// If it is at the end of time or beyond, where nothing moves any more.
+pub(crate) fn instant(what: &str, seconds: f64) -> Result<Time, JsError> {
+    const END: f64 = 4_294_967_296.0;
+    if seconds < END {
         return Ok(Time::from_seconds_f64(seconds));
     }
-    Err(JsError::new(&format!("{what} has to be given a finite number of seconds, zero or more, not {seconds}")))
+    Err(JsError::new(&format!("{what} would reach the end of time, which is {END} s, 136 years, after the beginning")))
+}
+
+/// The strain at which lines have their full colours, if it is said.
+///
+/// # Errors
+/// If it is no finite number above zero.
+pub(crate) fn strain(value: &JsValue) -> Result<Option<f32>, JsError> {
+    if value.is_undefined() || value.is_null() {
+        return Ok(None);
+    }
+    let full = value.as_f64().map(|full| full as f32).filter(|full| *full > 0.0 && full.is_finite());
+    let refuse = || format!("the full strain has to be a finite number above zero, not {}", shown(value));
+    full.map(Some).ok_or_else(|| JsError::new(&refuse()))
 }
 
 /// A value where a whole number is expected.
@@ -124,8 +271,10 @@ fn whole(value: &JsValue, most: f64) -> Whole {
 
 /// A value in a message.
 fn shown(value: &JsValue) -> String {
-    match value.as_f64() {
-        Some(number) => number.to_string(),
-        None => format!("a {}", value.js_typeof().as_string().unwrap_or_default()),
+    let Some(number) = value.as_f64() else { return named(value) };
+    match unwritten(value) {
+        Some(name) => name.to_owned(),
+        None if number.abs() >= 1e21 => format!("{number:e}"),
+        None => number.to_string(),
     }
 }

@@ -1,6 +1,6 @@
 //! Files for scenes that name others: in a browser there is no disk to find them on.
 
-use crate::memory::room;
+use crate::memory::{has_room, own_floats, own_words, room, room_for_little};
 use js_sys::{Float32Array, JsString, Uint32Array};
 use pointmass::Vec3;
 use pointmass::scene::Files as SceneFiles;
@@ -29,13 +29,19 @@ const MOST_CORNERS: u32 = 1 << 23;
 /// Bytes that a vertex and a triangle of a mesh take at most, with an index over them.
 const EACH: usize = 512;
 
+/// Bytes that an entry takes at most, besides its name.
+const ENTRY: usize = 256;
+
 #[wasm_bindgen]
 impl Files {
     /// No files.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
     #[wasm_bindgen(constructor)]
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new() -> Result<Files, JsError> {
+        room_for_little()?;
+        Ok(Self::default())
     }
 
     /// A text that scenes include under this name.
@@ -44,7 +50,7 @@ impl Files {
     /// If it is too long.
     #[wasm_bindgen(js_name = addText)]
     pub fn add_text(&mut self, name: &JsString, text: &JsString) -> Result<(), JsError> {
-        let (name, text) = (short(name)?, long(text)?);
+        let (name, text) = (short("a file", name)?, long(text)?);
         self.texts.insert(name, text.into());
         Ok(())
     }
@@ -61,11 +67,12 @@ impl Files {
         coordinates: &Float32Array,
         indices: &Uint32Array,
     ) -> Result<(), JsError> {
-        let name = short(name)?;
+        let name = short("a file", name)?;
         let refuse = |what: &str| JsError::new(&format!("{name}: {what}"));
-        if !(coordinates.is_instance_of::<Float32Array>() && indices.is_instance_of::<Uint32Array>()) {
-            return Err(refuse("coordinates have to be a Float32Array, and indices a Uint32Array"));
-        }
+        let arrays = own_floats(coordinates).zip(own_words(indices));
+        let (coordinates, indices) = arrays.ok_or_else(|| {
+            refuse("coordinates have to be a Float32Array, and indices a Uint32Array, that can be read and copied")
+        })?;
         let (vertices, triangles) = (coordinates.length() / 3, indices.length() / 3);
         if !(coordinates.length().is_multiple_of(3) && indices.length().is_multiple_of(3)) {
             return Err(refuse("coordinates and indices have to come in threes"));
@@ -82,10 +89,14 @@ impl Files {
     }
 
     /// The same files once more: a world takes a copy of what it is given. It costs next to nothing.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
     #[wasm_bindgen(js_name = clone, skip_typescript)]
-    #[must_use]
-    pub fn copy(&self) -> Self {
-        self.clone()
+    pub fn copy(&self) -> Result<Files, JsError> {
+        let names = self.texts.keys().chain(self.meshes.keys()).map(|name| name.len() + ENTRY).sum();
+        room(names, "the files")?;
+        Ok(self.clone())
     }
 }
 
@@ -108,6 +119,9 @@ impl SceneFiles for Files {
         if self.read > MOST_TEXT {
             return Err(format!("'{path}' makes more than {} MiB of text, includes counted", MOST_TEXT >> 20));
         }
+        if !has_room(text.len().saturating_mul(12)) {
+            return Err(format!("there is not enough memory for '{path}'"));
+        }
         Ok(text.to_string())
     }
 
@@ -120,6 +134,9 @@ impl SceneFiles for Files {
                 false => format!("no mesh '{path}' was added to the files"),
             });
         };
+        if !has_room(EACH * (mesh.vertices().len() + mesh.triangles().len())) {
+            return Err(format!("there is not enough memory for '{path}'"));
+        }
         Ok((**mesh).clone())
     }
 
@@ -128,16 +145,18 @@ impl SceneFiles for Files {
     }
 }
 
-/// A name.
-fn short(name: &JsString) -> Result<String, JsError> {
+/// A name, of `what`.
+pub(crate) fn short(what: &str, name: &JsString) -> Result<String, JsError> {
     const LONGEST: u32 = 4096;
-    match name.as_string() {
-        _ if name.is_string() && name.length() > LONGEST => {
-            Err(JsError::new(&format!("a name of a file may have {LONGEST} characters")))
-        }
-        Some(name) => Ok(name),
-        None => Err(JsError::new("the name of a file has to be a string")),
+    if !name.is_string() {
+        return Err(JsError::new(&format!("the name of {what} has to be a string")));
     }
+    // A long one would have to be copied to be looked at.
+    if name.length() > LONGEST {
+        return Err(JsError::new(&format!("the name of {what} may have {LONGEST} characters")));
+    }
+    room_for_little()?;
+    Ok(String::from(name))
 }
 
 /// A text, as UTF-8.

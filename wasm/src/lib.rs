@@ -4,27 +4,62 @@
 //! import init, { World } from "pointmass";
 //! await init();
 //! const world = new World(scene);              // an object, or a text: .json or .scn
-//! const start = performance.now();
+//! let last;
 //! requestAnimationFrame(function frame(now) {
-//!   world.stepTo(Math.max(0, now - start) / 1000);
+//!   world.advance((now - (last ?? now)) / 1000);
+//!   last = now;
 //!   draw(world.positions(), world.count);      // Float32Array: x, y, z by x, y, z
 //!   requestAnimationFrame(frame);
 //! });
 //! ```
 
 mod arguments;
+mod clock;
 mod draw;
 mod files;
 mod memory;
+mod path;
+mod scene;
 
 pub use files::Files;
 
-use arguments::{capacity, place, seconds, seed, text};
-use js_sys::{Float32Array, JsString, Uint8Array, Uint32Array};
+use arguments::{capacity, instant, place, seconds, seed, strain};
+use clock::Clock;
+use js_sys::{Float32Array, Int32Array, JsString, Uint8Array, Uint32Array};
 use pointmass::draw::{Appearance, Knot, Line, Ring, StrandLight, Trails, View, appearance};
-use pointmass::scene::{Model, SceneFile, read_scn};
-use pointmass::{Heap, Storage, System, Vec3};
+use pointmass::scene::Model;
+use pointmass::{Heap, Id, Likeness, Own, Storage, System, Vec3};
+use scene::Loaded;
 use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(typescript_custom_section)]
+const PARTICLE: &str = r#"
+/** A particle as `World.spawn` takes it: an entry of a scene's list `particles`. */
+export interface Particle {
+    /** Where it is [m]; [0, 0, 0], where nothing is said. */
+    position?: ArrayLike<number>;
+    /** How it moves [m/s]; [0, 0, 0]. */
+    velocity?: ArrayLike<number>;
+    /** Its radius [m]; 0, a point. */
+    radius?: number;
+    /** Its mass [kg], above zero; 1. */
+    mass?: number;
+    /** It never moves, but still attracts; false. */
+    fixed?: boolean;
+    /** Coefficient of linear drag [kg/s]; 0. */
+    drag?: number;
+    /** Electric charge [C]; 0. */
+    charge?: number;
+    /** The share of the normal speed it keeps when it hits something; 0.5. */
+    elasticity?: number;
+    /** How long it lives [s]; 0, for ever. */
+    lifetime?: number;
+    /** The number of its material in the scene, from 0; none. */
+    material?: number;
+    /** Red, green, blue and opacity, 0 to 255; those of its material. */
+    color?: ArrayLike<number>;
+}
+"#;
 
 /// The version of this package.
 #[wasm_bindgen]
@@ -34,15 +69,20 @@ pub fn version() -> String {
 }
 
 /// A scene in motion. All its memory is taken when it is made; stepping takes none.
+///
+/// `free()`, or `using`, gives the memory back at once; twice does no harm. Whoever is forgotten is freed when the engine collects garbage.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct World {
     model: Model,
     system: System<Heap>,
     seed: u64,
+    clock: Clock,
     warnings: Vec<String>,
     /// The light on strands, for an eye at the origin.
     light: StrandLight,
+    /// True for each particle of the start that is drawn as part of something else.
+    covered: Vec<bool>,
     /// The memory of trails, where some material leaves one.
     rings: Vec<Ring>,
     knots: Vec<Knot>,
@@ -51,12 +91,17 @@ pub struct World {
 /// The places that are remembered of each trail.
 const KNOTS: usize = 48;
 
+/// The strain at which lines have their full colours, where nothing is said.
+const FULL_STRAIN: f32 = 0.1;
+
 impl World {
-    /// Something of how each of the living looks.
-    fn appearances<T>(&self, of: impl Fn(Appearance) -> T) -> Vec<T> {
+    /// Something of how each of the living looks, as a list for `what`.
+    fn appearances<T>(&self, what: &str, of: impl Fn(Appearance) -> T) -> Result<Vec<T>, JsError> {
+        let mut list = memory::reserved(self.system.len(), what)?;
         let scene = self.model.scene();
         let state = self.system.state(&scene);
-        (0..self.system.len()).filter_map(|row| appearance(&state, row)).map(of).collect()
+        list.extend((0..self.system.len()).filter_map(|row| appearance(&state, row)).map(of));
+        Ok(list)
     }
 
     /// Lets trails remember where everybody is.
@@ -67,6 +112,16 @@ impl World {
         let scene = self.model.scene();
         Trails::new(&mut self.rings, &mut self.knots, None).look(&self.system.state(&scene));
     }
+}
+
+/// Memory for so many particles of a model.
+fn heap(model: &Model, capacity: u32) -> Result<Heap, JsError> {
+    // JavaScript may write where it looks, and put in particles that are like no others: no column of theirs may be shared.
+    let likeness = model.scene().likeness();
+    let own = Own { last_spring: likeness.own.last_spring, ..Own::ALL };
+    Heap::alike(model.size(capacity as usize), &Likeness { own, ..likeness }).map_err(|_| {
+        JsError::new(&format!("there is not enough memory for {capacity} particles: take a smaller capacity"))
+    })
 }
 
 #[wasm_bindgen]
@@ -86,65 +141,100 @@ impl World {
         #[wasm_bindgen(unchecked_optional_param_type = "number | bigint | null")] seed: &JsValue,
     ) -> Result<World, JsError> {
         let mut files = arguments::files(files)?;
-        let text = text(scene)?;
+        let given = arguments::scene(scene)?;
         let (capacity, seed) = (self::capacity(capacity)?, self::seed(seed)?);
-        memory::room_to_read(&text)?;
-        let (file, warnings) = if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
-            (SceneFile::from_json("scene", &text)?, Vec::new())
-        } else {
-            read_scn("scene", &text, &mut files)?
-        };
-        memory::room_to_build(&file, &files)?;
-        let model = Model::load(&file, "scene", &mut files)?;
+        let Loaded { file, model, warnings } = Loaded::new(&given, &mut files)?;
         let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(model.particles.len() as u32));
-        let mut likeness = model.scene().likeness();
-        // JavaScript may write where it looks: that must not be shared with other columns.
-        likeness.own.radius = true;
-        let heap = Heap::alike(model.size(capacity as usize), &likeness).map_err(|_| {
-            JsError::new(&format!("there is not enough memory for {capacity} particles: take a smaller capacity"))
-        })?;
+        let system = System::with(heap(&model, capacity)?);
         let has_trails = model.materials.iter().any(|material| material.trail.is_some());
         let slots = if has_trails { capacity as usize } else { 0 };
-        memory::room(slots.saturating_mul(size_of::<[Knot; KNOTS]>() + size_of::<Ring>()), "the trails of the scene")?;
-        let (rings, knots) = (vec![Ring::NONE; slots], vec![Knot::NONE; slots * KNOTS]);
+        let rings = memory::filled(Ring::NONE, slots, "the trails of the scene")?;
+        let knots = memory::filled(Knot::NONE, slots.saturating_mul(KNOTS), "the trails of the scene")?;
+        memory::room(model.particles.len(), "the scene")?;
+        let covered = draw::covered(&model);
         let (seed, light) = (seed.unwrap_or(file.run.seed), file.light_on_strands(Vec3::ZERO));
-        let mut world = Self { model, system: System::with(heap), seed, warnings, light, rings, knots };
+        let clock = Clock::new(file.run.dt);
+        let mut world = Self { model, system, seed, clock, warnings, light, covered, rings, knots };
         world.restart()?;
         Ok(world)
     }
 
-    /// Back to the beginning.
+    /// Back to the beginning; what was put in since is gone, and of the time that `advance` has been told nothing is left over.
     ///
     /// # Errors
     /// None that a loaded scene can meet.
     pub fn restart(&mut self) -> Result<(), JsError> {
+        memory::room_for_little()?;
         self.system.start(&self.model.scene(), self.seed)?;
+        self.clock = Clock::new(self.clock.dt);
         self.rings.fill(Ring::NONE);
         self.remember();
         Ok(())
     }
 
-    /// Moves the world on by `seconds`.
+    /// Moves the world on by the time that has gone by \[s\], in steps of the scene's own length (`dt`): what a page calls every frame.
+    ///
+    /// Steps end at multiples of `dt`, as those of the command line do, so a run does not depend on how long frames last. What is left
+    /// over counts for the next call. There are `most` steps at the most, by default as many as make a tenth of a second, and no fewer than 8;
+    /// time beyond that is dropped, so that a tab which was hidden, or a machine which is too slow, falls behind and does not freeze.
+    ///
+    /// Returns the share of the next step that has gone by, from 0 to 1: who draws what is between the places before the last step and
+    /// those after it, by that share, has smooth pictures at any rate of frames.
     ///
     /// # Errors
-    /// If that is no finite number, or below zero.
-    pub fn step(&mut self, seconds: f64) -> Result<(), JsError> {
-        let dt = self::seconds("step", seconds)?;
-        self.system.step(&self.model.scene(), dt);
+    /// If the time is no finite number, or below zero, or would be beyond the end of time, 2^32 s; or `most` is no whole number above zero.
+    pub fn advance(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "number")] elapsed: &JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "number | null")] most: &JsValue,
+    ) -> Result<f64, JsError> {
+        let elapsed = seconds("advance", elapsed)?;
+        let most = arguments::most(most)?.unwrap_or_else(|| self.clock.usual());
+        for _ in 0..self.clock.take(elapsed, most) {
+            let end = instant("advance", self.clock.next(self.system.time()))?;
+            self.system.step_to(&self.model.scene(), end);
+            self.remember();
+        }
+        Ok(self.clock.share())
+    }
+
+    /// Moves the world on by `seconds` in ONE step of the method, whatever `dt` the scene says.
+    ///
+    /// A step that is too long is not divided: cloth, links and stacks fly apart or explode, quick balls pass each other. A page
+    /// whose frames may last longer than `dt` wants `advance`.
+    ///
+    /// # Errors
+    /// If that is no finite number, or below zero, or would be beyond the end of time, 2^32 s.
+    pub fn step(&mut self, #[wasm_bindgen(unchecked_param_type = "number")] seconds: &JsValue) -> Result<(), JsError> {
+        let seconds = self::seconds("step", seconds)?;
+        instant("step", self.system.time().seconds_f64() + seconds)?;
+        self.system.step(&self.model.scene(), instant("step", seconds)?);
         self.remember();
         Ok(())
     }
 
-    /// Moves the world on, in one step, to the instant `seconds`; not back. Stepping to n / 60 does not drift.
+    /// Moves the world on, in ONE step of the method, to the instant `seconds`; not back. Stepping to n / 60 does not drift.
+    ///
+    /// A step that is too long is not divided, as of `step`: `advance` makes as many as are needed.
     ///
     /// # Errors
-    /// If that is no finite number, or below zero.
+    /// If that is no finite number, or below zero, or would be beyond the end of time, 2^32 s.
     #[wasm_bindgen(js_name = stepTo)]
-    pub fn step_to(&mut self, seconds: f64) -> Result<(), JsError> {
-        let dt = self::seconds("stepTo", seconds)? - self.system.time();
-        self.system.step(&self.model.scene(), dt);
+    pub fn step_to(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "number")] seconds: &JsValue,
+    ) -> Result<(), JsError> {
+        let end = instant("stepTo", self::seconds("stepTo", seconds)?)?;
+        self.system.step_to(&self.model.scene(), end);
         self.remember();
         Ok(())
+    }
+
+    /// The length of the scene's steps \[s\], `run.dt` there: that of the steps of `advance`.
+    #[wasm_bindgen(getter)]
+    #[must_use]
+    pub fn dt(&self) -> f64 {
+        self.clock.dt
     }
 
     /// The instant it has reached \[s\].
@@ -152,6 +242,36 @@ impl World {
     #[must_use]
     pub fn time(&self) -> f64 {
         self.system.time().seconds_f64()
+    }
+
+    /// Puts a particle in now: an object like an entry of the scene's list `particles`, read and checked as such. Its columns of a user's own
+    /// are zero, it is bound by nothing, and rigid bodies meet it only if the scene has loose balls of its own.
+    ///
+    /// Returns its id, as `ids` has it; nothing, where there is no room for it, which the report counts as refused.
+    ///
+    /// # Errors
+    /// If it cannot be used, with the path of what is wrong, or there is not enough memory.
+    pub fn spawn(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Particle")] particle: &JsValue,
+    ) -> Result<Option<u32>, JsError> {
+        let text = arguments::particle(particle)?;
+        let particle = scene::particle(&text, &mut self.model)?;
+        for push in &mut self.model.forces.2 {
+            push.reach = push.reach.max(2.0 * particle.radius);
+        }
+        Ok(self.system.spawn(&particle).ok().map(Id::serial))
+    }
+
+    /// Takes a particle out, by its id out of `ids` or `spawn`; returns whether it was alive. Rows change as when one dies.
+    ///
+    /// # Errors
+    /// If that is no number that an id can have.
+    pub fn remove(&mut self, #[wasm_bindgen(unchecked_param_type = "number")] id: &JsValue) -> Result<bool, JsError> {
+        let id = arguments::id(id)?;
+        let row = self.system.particles().serial.iter().position(|&serial| serial == id);
+        let id = row.and_then(|row| self.system.id(row));
+        Ok(id.is_some_and(|id| self.system.remove(&self.model.scene(), id)))
     }
 
     /// Particles alive.
@@ -168,12 +288,13 @@ impl World {
         self.system.capacity() as u32
     }
 
-    /// Positions \[m\], three numbers a particle: a view into the module's memory, not a copy.
+    /// Positions \[m\], three numbers a particle: a view onto the module's memory, not a copy. It may be written to.
     ///
-    /// It has room for `capacity` particles; the first `count` are alive, and what is behind them means nothing. It stays
-    /// where it is while the world lives, and `step`, `stepTo` and `restart` do not detach it. All else may make the
-    /// module's memory grow, other worlds and files above all: its length is zero then, and it has to be asked for anew.
-    /// That costs next to nothing, so a loop may do it every frame.
+    /// It has room for `capacity` particles; the first `count` are alive, and what is behind them means nothing. `advance`, `step`, `stepTo`
+    /// and `restart` change what it shows and never detach it. All else may make the module's memory grow, lists that are copies, other
+    /// worlds and files above all: its length is zero then, and it has to be asked for anew. That costs next to nothing, so a loop may do it
+    /// every frame. A view does not keep its world: when that is freed, or collected as nobody holds it any more, the view shows whatever
+    /// comes to lie there.
     #[must_use]
     pub fn positions(&self) -> Float32Array {
         view(bytemuck::cast_slice(self.system.memory().columns().position))
@@ -196,7 +317,7 @@ impl World {
     /// # Errors
     /// If it is no string, or the scene has no column of that name.
     pub fn custom(&self, name: &JsString) -> Result<Float32Array, JsError> {
-        let name = name.as_string().ok_or_else(|| JsError::new("the name of a column has to be a string"))?;
+        let name = files::short("a column", name)?;
         let (columns, capacity) = (self.system.memory().columns(), self.system.capacity());
         let number = self.model.custom.iter().position(|custom| custom.name == name);
         let column = number.and_then(|number| columns.kept.get(number * capacity..(number + 1) * capacity));
@@ -204,20 +325,42 @@ impl World {
         Ok(view(bytemuck::cast_slice(column)))
     }
 
+    /// The number of each living particle's material in the scene, from 0; -1, where it has none. A copy.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn materials(&self) -> Result<Int32Array, JsError> {
+        draw::materials_of(&self.system.state(&self.model.scene()))
+    }
+
+    /// The rows of those that are to be drawn as points or balls: all that can be seen and are not drawn as `sprites`, `shapes`, `boxes`,
+    /// `surfaces` or `strands`. Their places are in `positions`, the rest of how they look in `colors` and `looks`. A copy.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn points(&self) -> Result<Uint32Array, JsError> {
+        let serial = self.system.particles().serial;
+        draw::points_of(&self.system.state(&self.model.scene()), serial, &self.covered)
+    }
+
     /// Colours of the living as they look now, four bytes a particle: red, green, blue, opacity, by materials and ages. A copy.
-    #[must_use]
-    pub fn colors(&self) -> Uint8Array {
-        let colors: Vec<_> = self.appearances(|look| look.color);
-        Uint8Array::from(colors.as_flattened())
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn colors(&self) -> Result<Uint8Array, JsError> {
+        let colors = self.appearances("the colours", |look| look.color)?;
+        memory::bytes(colors.as_flattened())
     }
 
     /// The rest of how the living look now, four numbers a particle: the diameter \[m\], zero for points, which take
     /// what suits the picture; the factor that is in it, for points; from 0, a lit ball, to 1, a glow; and the angle by
     /// which a picture of it is turned anticlockwise \[rad\]. A copy.
-    #[must_use]
-    pub fn looks(&self) -> Float32Array {
-        let looks: Vec<_> = self.appearances(|look| [look.diameter, look.scale, look.glow, look.rotation]);
-        Float32Array::from(looks.as_flattened())
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn looks(&self) -> Result<Float32Array, JsError> {
+        let looks = self.appearances("the looks", |look| [look.diameter, look.scale, look.glow, look.rotation])?;
+        memory::floats(looks.as_flattened())
     }
 
     /// The pictures of the living whose material has a sprite, seen from `eye` with `up` upright (`[0, 1, 0]`, where nothing is said), the
@@ -225,7 +368,7 @@ impl World {
     /// 0 to 1, the material's number, the frame of its flipbook, and how it is laid on: 0 alpha, 1 premultiplied, 2 additive, 3 opaque. A copy.
     ///
     /// # Errors
-    /// If these are not three finite numbers each.
+    /// If these are not three finite numbers each, or there is not enough memory.
     pub fn sprites(
         &self,
         #[wasm_bindgen(unchecked_param_type = "ArrayLike<number>")] eye: &JsValue,
@@ -233,84 +376,124 @@ impl World {
     ) -> Result<Float32Array, JsError> {
         let up = if up.is_undefined() || up.is_null() { Vec3::Y } else { place("up", up)? };
         let (view, scene) = (View { eye: place("eye", eye)?, up }, self.model.scene());
-        Ok(draw::sprites_of(&self.system.state(&scene), &view))
+        draw::sprites_of(&self.system.state(&scene), &view)
     }
 
     /// The living whose material has a shape, 17 numbers each: where the shape's origin is, the images of its three axes \[m\], red, green,
     /// blue, opacity from 0 to 1, the material's number. A copy.
-    #[must_use]
-    pub fn shapes(&self) -> Float32Array {
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn shapes(&self) -> Result<Float32Array, JsError> {
         draw::shapes_of(&self.system.state(&self.model.scene()))
     }
 
     /// The rigid boxes of the scene that can be seen, 17 numbers each: the middle, the ways from there to the middles of three sides \[m\], red,
     /// green, blue, opacity from 0 to 1, and the material's number. A copy.
-    #[must_use]
-    pub fn boxes(&self) -> Float32Array {
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn boxes(&self) -> Result<Float32Array, JsError> {
         draw::boxes_of(&self.system.state(&self.model.scene()), &self.model)
     }
 
     /// The surfaces of cloths and of rigid bodies that are no boxes, 30 numbers a triangle, which is seen anticlockwise from outside: for each
     /// corner its place \[m\], the normal there, red, green, blue, opacity from 0 to 1. Triangles where a cloth is torn are left out. A copy.
-    #[must_use]
-    pub fn surfaces(&self) -> Float32Array {
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn surfaces(&self) -> Result<Float32Array, JsError> {
         draw::surfaces_of(&self.system.state(&self.model.scene()), &self.model)
     }
 
-    /// The segments of strands as lines like `springs`, in the scene's light as it is seen from `eye`, each strand from root to tip. A copy.
+    /// The segments of strands, and of the scene's `ropes`, as lines like `springs`, in the scene's light as it is seen from `eye`, each
+    /// strand from root to tip. A copy.
     ///
     /// # Errors
-    /// If that is not three finite numbers.
+    /// If that is not three finite numbers, or there is not enough memory.
     pub fn strands(
         &self,
         #[wasm_bindgen(unchecked_param_type = "ArrayLike<number>")] eye: &JsValue,
     ) -> Result<Float32Array, JsError> {
         let light = StrandLight { eye: place("eye", eye)?, ..self.light };
-        Ok(draw::strands_of(&self.system.state(&self.model.scene()), &self.model, &light))
+        draw::strands_of(&self.system.state(&self.model.scene()), &self.model, &light)
     }
 
-    /// The springs that hold, as lines of 16 numbers each: both ends \[m\], the widths there \[m\], zero for about a pixel, and the colours there,
-    /// red, green, blue, opacity from 0 to 1: the redder the longer and the bluer the shorter than at rest, altogether at a strain of
+    /// The springs that hold, those of cloths as well, as lines of 16 numbers each: both ends \[m\], the widths there \[m\], zero for about a pixel, and the
+    /// colours there, red, green, blue, opacity from 0 to 1: the redder the longer and the bluer the shorter than at rest, altogether at a strain of
     /// `full`, which is 0.1 where nothing is said. A copy.
-    #[must_use]
-    pub fn springs(&self, full: Option<f32>) -> Float32Array {
-        draw::springs_of(&self.system.state(&self.model.scene()), full.unwrap_or(0.1))
+    ///
+    /// # Errors
+    /// If `full` is no finite number above zero, or there is not enough memory.
+    pub fn springs(
+        &self,
+        #[wasm_bindgen(unchecked_optional_param_type = "number | null")] full: &JsValue,
+    ) -> Result<Float32Array, JsError> {
+        let full = strain(full)?.unwrap_or(FULL_STRAIN);
+        draw::springs_of(&self.system.state(&self.model.scene()), full)
+    }
+
+    /// The straight links of constraints (chains, bridges, bars), as lines like `springs`, by their strain as those are. Segments of the scene's
+    /// `ropes` are among `strands`. A copy.
+    ///
+    /// # Errors
+    /// As of `springs`.
+    pub fn links(
+        &self,
+        #[wasm_bindgen(unchecked_optional_param_type = "number | null")] full: &JsValue,
+    ) -> Result<Float32Array, JsError> {
+        let full = strain(full)?.unwrap_or(FULL_STRAIN);
+        draw::links_of(&self.system.state(&self.model.scene()), &self.model, full)
     }
 
     /// The trails that particles have left since `restart`, from step to step, as lines like `springs`, each trail from its particle
     /// backward. A copy.
-    #[must_use]
-    pub fn trails(&mut self) -> Float32Array {
-        let mut list = vec![Line::NONE; self.knots.len() + self.rings.len()];
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn trails(&mut self) -> Result<Float32Array, JsError> {
+        let mut list = memory::filled(Line::NONE, self.knots.len() + self.rings.len(), "the trails")?;
         let scene = self.model.scene();
         let trails = Trails::new(&mut self.rings, &mut self.knots, None);
         let (count, _) = trails.lines(&self.system.state(&scene), &mut list);
-        draw::lines(&list[..count])
+        draw::lines("the trails", &list[..count])
     }
 
     /// Which of the living is in which row: numbers unique over the run, from 0. A copy.
-    #[must_use]
-    pub fn ids(&self) -> Uint32Array {
-        Uint32Array::from(self.system.particles().serial)
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn ids(&self) -> Result<Uint32Array, JsError> {
+        memory::words(self.system.particles().serial)
     }
 
     /// The state's fingerprint, 16 hexadecimal digits: equal on every machine for equal scenes, seeds and steps.
-    #[must_use]
-    pub fn hash(&self) -> String {
-        format!("{:016x}", self.system.hash())
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn hash(&self) -> Result<String, JsError> {
+        memory::room_for_little()?;
+        Ok(format!("{:016x}", self.system.hash()))
     }
 
     /// The report of what happened since the beginning, as JSON: counters of births, deaths, hits and bounds met.
-    #[must_use]
-    pub fn report(&self) -> String {
-        serde_json::to_string(self.system.totals()).unwrap_or_default()
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn report(&self) -> Result<String, JsError> {
+        memory::room_for_little()?;
+        Ok(serde_json::to_string(self.system.totals()).unwrap_or_default())
     }
 
-    /// The remarks that reading the scene gave cause to.
+    /// The remarks that reading the scene gave cause to: on old names, on what can be run but is hardly meant.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
     #[wasm_bindgen(getter)]
-    #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+    pub fn warnings(&self) -> Result<Vec<String>, JsError> {
+        let bytes: usize = self.warnings.iter().map(|warning| warning.len() + size_of::<String>()).sum();
+        memory::room(2 * bytes, "the warnings")?;
+        Ok(self.warnings.clone())
     }
 }
 
