@@ -129,6 +129,15 @@ impl<'s, 'a> Looks<'s, 'a> {
             frame: own.sprite.map_or(0, |sprite| frame(&sprite, age)),
         })
     }
+
+    /// Tells whether the particle in a row is drawn as a point or a ball: it can be seen, and not as a [`Sprite`] or an [`Instance`].
+    pub fn is_dot(&mut self, row: usize) -> bool {
+        let is_own = |of: (u16, &Material<'_>)| of.1.sprite.is_some() || of.1.heading.is_some();
+        let has_own = self.material(row).is_some_and(is_own);
+        let Some(Appearance { diameter, scale, color, .. }) = self.appearance(row) else { return false };
+        let has_size = if diameter > 0.0 { !has_own } else { self.state.radius[row] == 0.0 && scale > 0.0 };
+        has_size && color[3] > 0
+    }
 }
 
 /// Where a particle is between the two curves of a property, if there are two.

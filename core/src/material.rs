@@ -473,7 +473,7 @@ pub(crate) fn on_surface(
 pub(crate) fn of_two(materials: &dyn MaterialList, elasticity: [f32; 2], material: [Option<u16>; 2]) -> Mixed {
     let [a, b] = elasticity;
     // Two that are alike keep just theirs, to the bit. An elasticity that is no number bounces nobody.
-    let elasticity = if a == b { a } else { sqrt(max(a * b, 0.0)) };
+    let elasticity = if a == b { max(a, 0.0) } else { sqrt(max(a * b, 0.0)) };
     Mixed { elasticity, friction: friction(of(materials, material[0]), of(materials, material[1])) }
 }
 

@@ -31,7 +31,7 @@ pub struct Particle {
     pub drag: f32,
     /// Electric charge \[C\], for forces that read it (`Coulomb`).
     pub charge: f32,
-    /// The share of the normal speed it keeps when it hits something, 0 to 1.
+    /// The share of the normal speed it keeps when it hits something, 0 to 1; below zero counts as zero.
     pub elasticity: f32,
     /// How long it lives \[s\]; zero or less: for ever.
     pub lifetime: f32,

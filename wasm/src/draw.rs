@@ -3,13 +3,13 @@
 use crate::memory::{filled, floats, integers, reserved, room, words};
 use js_sys::{Float32Array, Int32Array, Uint32Array};
 use pointmass::draw::{
-    Appearance, Instance, Line, Lock, Sprite, StrandLight, Vertex, View, appearance, back_to_front, body,
-    links_by_strain, solid, solids, springs, sprite, sprites, strands, surface,
+    Instance, Line, Lock, Looks, Sprite, StrandLight, Vertex, View, back_to_front, body, links_by_strain, solids,
+    springs, sprites, strands, surface,
 };
 use pointmass::force::State;
 use pointmass::material::Blend;
 use pointmass::scene::Model;
-use pointmass::{Color, RigidBox, Vec3};
+use pointmass::{Color, RigidBox};
 use wasm_bindgen::JsError;
 
 /// What most calls return: a list, or an error, if there is not enough memory for it.
@@ -55,21 +55,10 @@ pub(crate) fn covered(model: &Model) -> Vec<bool> {
 pub(crate) fn points_of(state: &State<'_>, serial: &[u32], covered: &[bool]) -> Listed<Uint32Array> {
     let mut rows = reserved(serial.len(), "the points")?;
     let is_covered = |number: u32| covered.get(number as usize).is_some_and(|&covered| covered);
-    let drawn = serial.iter().enumerate().filter(|&(row, &number)| !is_covered(number) && is_point(state, row));
+    let mut looks = Looks::of(state);
+    let drawn = serial.iter().enumerate().filter(|&(row, &number)| !is_covered(number) && looks.is_dot(row));
     rows.extend(drawn.map(|(row, _)| row as u32));
     words(&rows)
-}
-
-/// Tells whether the particle in a row is drawn as a point or a ball, if nothing covers it.
-fn is_point(state: &State<'_>, row: usize) -> bool {
-    // Where it is seen from decides how a picture is turned, not whether there is one.
-    let view = View { eye: Vec3::ZERO, up: Vec3::Y };
-    if sprite(state, row, &view).is_some() || solid(state, row).is_some() {
-        return false;
-    }
-    let Some(Appearance { diameter, scale, color, .. }) = appearance(state, row) else { return false };
-    let is_dot = state.radius.get(row) == Some(&0.0) && scale > 0.0;
-    color[3] > 0 && (diameter > 0.0 || is_dot)
 }
 
 /// The number of the material in each row, -1 for none.

@@ -26,7 +26,7 @@ pub use files::Files;
 use arguments::{capacity, instant, place, seconds, seed, strain};
 use clock::Clock;
 use js_sys::{Float32Array, Int32Array, JsString, Uint8Array, Uint32Array};
-use pointmass::draw::{Appearance, Knot, Line, Ring, StrandLight, Trails, View, appearance};
+use pointmass::draw::{Appearance, Knot, Line, Looks, Ring, StrandLight, Trails, View};
 use pointmass::scene::Model;
 use pointmass::{Heap, Id, Likeness, Own, Storage, System, Vec3};
 use scene::Loaded;
@@ -100,7 +100,8 @@ impl World {
         let mut list = memory::reserved(self.system.len(), what)?;
         let scene = self.model.scene();
         let state = self.system.state(&scene);
-        list.extend((0..self.system.len()).filter_map(|row| appearance(&state, row)).map(of));
+        let mut looks = Looks::of(&state);
+        list.extend((0..self.system.len()).filter_map(|row| looks.appearance(row)).map(of));
         Ok(list)
     }
 

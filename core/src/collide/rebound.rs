@@ -55,13 +55,14 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let (place, before) = (meeting.place, path.velocity(meeting.time));
         let incoming = dot(minus(before, surface), normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
-        let outgoing = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
+        let outgoing = if incoming < 0.0 { max(-incoming * mixed.elasticity, 0.0) } else { incoming };
         let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
-        let drive = ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration));
-        let pressing = -dot(drive, normal);
+        let seen = |slip| ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration_of(slip)));
+        let goes = ride.map_or(surface, |ride| ride.velocity[0]);
+        let pressing = -dot(seen(aside(minus(before, goes), normal)), normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
@@ -86,6 +87,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             self.lead_on(&lead, &mut onward, None);
             return onward;
         }
+        let drive = seen(slip);
+        let pressing = -dot(drive, normal);
         let landing = Landing {
             beside,
             during,
@@ -148,13 +151,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
             let crept = if lay { scaled(came, 0.5 * fell) } else { Vec3::ZERO };
-            Path {
-                x0: beside,
-                v0: after,
-                x1: minus(plus(ride.place, way), crept),
-                v1: plus(ride.velocity[1], end),
-                during,
-            }
+            let (x1, v1) = ride.after(way, end);
+            Path { x0: beside, v0: after, x1: minus(x1, crept), v1, during }
         } else {
             let stays = stays && has_lain(path, meeting, place);
             let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
@@ -203,7 +201,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             }
             back *= 4.0;
         }
-        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
+        self.walls.carry(&Segment::waiting(chord.from, self.radius, [chord.during[0], now]))
     }
 }
 

@@ -83,7 +83,7 @@ impl Straight<'_, '_> {
             self.rebound(path, &way, hit);
         }
         self.report.caps.bounces += 1;
-        path.x1 = self.walls.carry(path.x0, self.radius, path.during);
+        path.x1 = self.walls.carry(&Segment::waiting(path.x0, self.radius, path.during));
         path.v1 = path.v0;
         Some(PendingDeath::Lives)
     }
@@ -107,7 +107,7 @@ impl Straight<'_, '_> {
         let relative = minus(before, hit.velocity);
         let (incoming, pressing) = (dot(relative, normal), -dot(acceleration, normal));
         // Where velocities say that it leaves what the way meets, it has come back meanwhile, or rests.
-        let bounced = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
+        let bounced = if incoming < 0.0 { max(-incoming * mixed.elasticity, 0.0) } else { incoming };
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * bounced < RESTING * tile.dt.seconds() * pressing);
         let outgoing = if rests { 0.0 } else { bounced };
         let came = along(relative, normal, -incoming);
@@ -148,6 +148,10 @@ impl Straight<'_, '_> {
     /// the way began, or where that is carried to.
     fn set_off(&self, way: &Segment, hit: &Hit, place: Vec3, during: [Time; 2]) -> Vec3 {
         let aside = Segment { to: along(place, hit.normal, 2.0 * hit.slack), during, ..*way };
-        if self.walls.first_hit(&aside).is_none() { aside.to } else { self.walls.carry(way.from, self.radius, during) }
+        if self.walls.first_hit(&aside).is_none() {
+            aside.to
+        } else {
+            self.walls.carry(&Segment { to: way.from, ..aside })
+        }
     }
 }

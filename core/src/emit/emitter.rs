@@ -120,7 +120,7 @@ pub struct Emitter<S, M = ()> {
     /// Electric charge \[C\].
     #[cfg_attr(feature = "serde", serde(default))]
     pub charge: Varied,
-    /// Share of the normal speed kept in a hit.
+    /// Share of the normal speed kept in a hit; below zero counts as zero.
     #[cfg_attr(feature = "serde", serde(default = "half"))]
     pub elasticity: Varied,
     /// Lifetime \[s\]; zero or less: for ever.

@@ -191,7 +191,7 @@ pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<Stri
     if most > 1.0 + ROUNDING {
         return Some(format!("{most} is above 1, so hits add energy"));
     }
-    (least < -ROUNDING).then(|| format!("{least} is below 0, which no hit can leave of a speed"))
+    (least < -ROUNDING).then(|| format!("{least} is below 0, which counts as 0: hits leave nothing of a speed"))
 }
 
 /// A remark on an odd angle within which births leave. The lecture's recipe takes the sine of any.

@@ -2,6 +2,7 @@
 
 use super::hit::earlier;
 use super::{Aabb, Affine, Clearance, Contact, Face, Facing, Hit, Hulls, Marks, Ride, Segment, Solid};
+use crate::math::along;
 use crate::time::Time;
 use glam::Vec3;
 
@@ -100,10 +101,10 @@ pub trait Collider: Sync {
         let _ = (center, reach, at, visit);
     }
 
-    /// Where a ball that waits at `point` is by the end of a span, if what moves would run over it and takes it along.
-    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
-        let _ = (radius, during);
-        point
+    /// Where a ball is that would wait at the beginning of `way`, by the end of that: there, if what moves would run over it and takes it along; else at
+    /// the end of `way`, to which something else may have taken it.
+    fn carry(&self, way: &Segment) -> Vec3 {
+        way.to
     }
 
     /// Where a particle that rests is taken by what moves: `seat` leads from it into what it rests on, as that is at its
@@ -237,8 +238,8 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
     }
-    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
-        (**self).carry(point, radius, during)
+    fn carry(&self, way: &Segment) -> Vec3 {
+        (**self).carry(way)
     }
     fn ride(&self, seat: &Segment) -> Option<Ride> {
         (**self).ride(seat)
@@ -249,6 +250,31 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn moves(&self) -> bool {
         (**self).moves()
     }
+}
+
+/// The largest number of times that things take a ball along by turns. Those that need more squeeze it.
+const MAX_TURNS: u32 = 4;
+
+/// Where a ball is in the end that things take along in turns, until none of them takes it farther.
+fn carried(way: &Segment, take: impl Fn(&mut Segment)) -> Vec3 {
+    let mut way = *way;
+    for _ in 0..MAX_TURNS {
+        let to = way.to;
+        take(&mut way);
+        if way.to == to {
+            break;
+        }
+    }
+    way.to
+}
+
+/// Where one of several things takes a ball along, or lets it be taken by others: what stands still lets nobody through.
+fn taken(thing: &(impl Collider + ?Sized), way: &Segment) -> Vec3 {
+    if way.from == way.to || thing.moves() {
+        return thing.carry(way);
+    }
+    let through = thing.first_hit(way);
+    through.map_or(way.to, |hit| along(way.at(hit.time), hit.normal, 2.0 * hit.slack))
 }
 
 impl<T: Collider> Collider for [T] {
@@ -273,8 +299,8 @@ impl<T: Collider> Collider for [T] {
         let bounds = Aabb { min: center - reach, max: center + reach };
         self.iter().filter(|c| c.may_touch(&bounds)).for_each(|c| c.contacts(center, reach, at, visit));
     }
-    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
-        self.iter().fold(point, |point, c| c.carry(point, radius, during))
+    fn carry(&self, way: &Segment) -> Vec3 {
+        carried(way, |way| self.iter().for_each(|c| way.to = taken(c, way)))
     }
     fn ride(&self, seat: &Segment) -> Option<Ride> {
         let bounds = seat.bounds();
@@ -308,8 +334,8 @@ macro_rules! lists {
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.as_slice().contacts(center, reach, at, visit);
             }
-            fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
-                self.as_slice().carry(point, radius, during)
+            fn carry(&self, way: &Segment) -> Vec3 {
+                self.as_slice().carry(way)
             }
             fn ride(&self, seat: &Segment) -> Option<Ride> {
                 self.as_slice().ride(seat)
@@ -365,11 +391,12 @@ macro_rules! tuples {
                     $name.contacts(center, reach, at, visit);
                 })+
             }
-            fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+            fn carry(&self, way: &Segment) -> Vec3 {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
-                $(let point = $name.carry(point, radius, during);)+
-                point
+                carried(way, |way| {
+                    $(way.to = taken($name, way);)+
+                })
             }
             fn ride(&self, seat: &Segment) -> Option<Ride> {
                 #[allow(non_snake_case)]

@@ -1,6 +1,6 @@
 //! What colliders answer: where a path hits them, where a ball leans on them, where they take what rests on them.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// Where a segment meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +55,25 @@ pub struct Ride {
     pub velocity: [Vec3; 2],
     /// How that changes in the beginning \[m/s²\].
     pub acceleration: Vec3,
+    /// How it turns in the beginning and in the end \[rad/s\].
+    pub spin: [Vec3; 2],
+    /// How it has turned meanwhile.
+    pub turn: Mat3,
+}
+
+impl Ride {
+    /// How the velocity changes in the beginning of what goes along so fast \[m/s\] and keeps that way, as seen from what takes it along \[m/s²\]: by that of
+    /// Coriolis as well.
+    pub(crate) fn acceleration_of(&self, slip: Vec3) -> Vec3 {
+        self.acceleration + 2.0 * self.spin[0].cross(slip)
+    }
+
+    /// Where what goes along by a way \[m\], as that leads in the beginning, and so fast at last \[m/s\], is in the end, and its velocity.
+    pub(crate) fn after(&self, way: Vec3, slip: Vec3) -> (Vec3, Vec3) {
+        let [.., velocity] = self.velocity;
+        let way = self.turn * way;
+        (self.place + way, velocity + self.spin[1].cross(way) + self.turn * slip)
+    }
 }
 
 /// The earlier of two hits, the first where they tie.

@@ -185,19 +185,23 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
         });
     }
 
-    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
-        let Some(motion) = &self.motion else { return self.collider.carry(point, radius, during) };
-        if self.first_hit(&Segment { from: point, to: point, radius, during }).is_none() {
-            return point;
-        }
+    fn carry(&self, way: &Segment) -> Vec3 {
+        let Some(motion) = &self.motion else { return self.collider.carry(way) };
+        let Segment { radius, during, .. } = *way;
         let [start, end] = during.map(|instant| motion.frame(instant));
-        let from = start.local(point);
+        let from = start.local(way.from);
+        // Whom something else takes along goes as that goes, and not straight: it counts where it begins and ends.
+        let taken = Segment { from, to: end.local(way.to), radius, during: [during[1]; 2] };
+        let waits = way.from == way.to;
+        if !(if waits { self.first_hit(way) } else { self.collider.first_hit(&taken) }).is_some() {
+            return way.to;
+        }
         let mut place = end.world(from);
         // Rounding may have put it behind what it was nearer to than that.
         for _ in 0..MAX_PUSHES {
-            let moved = Segment { from, to: end.local(place), radius, during: [during[1]; 2] };
+            let moved = Segment { to: end.local(place), ..taken };
             let Some(hit) = self.collider.first_hit(&moved) else { break };
-            let rounding = Segment { radius, ..Segment::new(point, place) }.slack(size(&end));
+            let rounding = Segment { to: place, ..*way }.slack(size(&end));
             place += end.turn * hit.normal * (2.0 * (hit.slack + rounding));
         }
         place
@@ -213,7 +217,13 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
         let place = then.world(from);
         let velocity = [frame.velocity_at(seat.from), then.velocity_at(place)];
         let acceleration = frame.acceleration_at(seat.from);
-        Some(Ride { place, velocity, acceleration })
+        Some(Ride {
+            place,
+            velocity,
+            acceleration,
+            spin: [frame.spin, then.spin],
+            turn: then.turn * frame.turn.transpose(),
+        })
     }
 
     fn is_empty(&self) -> bool {

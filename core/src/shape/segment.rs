@@ -26,6 +26,11 @@ impl Segment {
         Self { from, to, radius: 0.0, during: [Time::ZERO; 2] }
     }
 
+    /// The path of a ball that waits where it is.
+    pub(crate) const fn waiting(at: Vec3, radius: f32, during: [Time; 2]) -> Self {
+        Self { from: at, to: at, radius, during }
+    }
+
     /// From one end to the other \[m\].
     #[inline]
     #[must_use]

@@ -1,8 +1,8 @@
 //! How points and balls bounce and come to rest.
 
-use pointmass::shape::{Cuboid, Plane};
-use pointmass::{Gravity, Method, Particle, Scene, Time, Vec3};
-use pointmass_tests::{G, f64s, gap, often, started};
+use pointmass::shape::{Collider, Cuboid, Plane};
+use pointmass::{Gravity, Meetings, Method, Particle, Scene, Time, Vec3};
+use pointmass_tests::{G, f64s, gap, often, run, started};
 
 const FLOOR: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
 
@@ -91,6 +91,39 @@ fn balls_in_a_box_never_end_in_its_walls() {
         for (row, &x) in p.position.iter().enumerate() {
             let apart = (x - p.radius[row]).min(1.0 - x - p.radius[row]).min_element();
             assert!(apart > -1e-6, "{row}: {apart}");
+        }
+    }
+}
+
+/// An elasticity below zero had turned velocities into what they hit, and places into no numbers.
+#[test]
+fn elasticities_below_zero_are_none() {
+    let chest = Cuboid { min: Vec3::splat(-1.0), max: Vec3::ONE };
+    let colliders: [&dyn Collider; 2] = [&FLOOR, &chest];
+    for (i, &method) in Method::ALL.iter().enumerate() {
+        for (radius, pull) in
+            [(0.0, Gravity::EARTH), (0.1, Gravity::EARTH), (0.0, Gravity { acceleration: Vec3::ZERO })]
+        {
+            let [none, below] = [0.0, -0.4].map(|elasticity| {
+                let start = [0.0f32, 1.0, 2.0, 3.0].map(|at| Particle {
+                    position: Vec3::new(0.2 * at - 0.3, 0.5 + 0.1 * at, 0.1 * at),
+                    velocity: Vec3::new(0.3 * at, -3.0 - at, 0.5),
+                    radius,
+                    elasticity,
+                    ..Particle::REST
+                });
+                let parts = Scene { start: &start, forces: &pull, colliders: colliders[i % 2], ..Scene::EMPTY };
+                let scene = Scene {
+                    integrator: method.integrator(),
+                    meetings: [Meetings::Through, Meetings::IMPULSE][i / 2 % 2],
+                    ..parts
+                };
+                let mut system = started(&scene, start.len(), 0);
+                run(&mut system, &scene, 1.0 / 60.0, 90);
+                assert_eq!((system.len(), system.totals().died.nonfinite), (4, 0), "{method} {radius}");
+                system.particles().position.to_vec()
+            });
+            assert_eq!(none, below, "{method} {radius}");
         }
     }
 }

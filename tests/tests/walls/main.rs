@@ -13,3 +13,4 @@ mod poison;
 mod riding;
 mod scenes;
 mod tunnels;
+mod turning;

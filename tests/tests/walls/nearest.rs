@@ -74,7 +74,7 @@ fn the_nearest_place_of_a_large_mesh_costs_little_however_far_away() {
             assert_eq!(found, Index::BRUTE.nearest(&mesh, point, |i| face(i).nearest(point)).0);
             tests += cost.tests;
         }
-        assert!(structure == Structure::Brute || tests < looks * 600, "{structure}: {tests}");
+        assert!(structure == Structure::Brute || tests < looks as u64 * 600, "{structure}: {tests}");
     }
 }
 
