@@ -23,15 +23,13 @@ struct Landing {
     /// How the surface moves there \[m/s\], and where it takes it, if it moves.
     surface: Vec3,
     ride: Option<Ride>,
-    /// The speed at which it parted from the surface before the hit \[m/s\], and the acceleration that presses it onto that \[m/s²\].
+    /// The speed at which it parted from the surface before the hit \[m/s\].
     incoming: f32,
-    pressing: f32,
     /// Its velocity along the surface, as seen from there, before friction and after it, and in the world after all \[m/s\].
     came: Vec3,
     slip: Vec3,
     after: Vec3,
-    /// Its acceleration as seen from the surface, and in the world \[m/s²\].
-    drive: Vec3,
+    /// Its acceleration in the world \[m/s²\].
     acceleration: Vec3,
     friction: Friction,
 }
@@ -60,9 +58,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
-        let seen = |slip| ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration_of(slip)));
         let goes = ride.map_or(surface, |ride| ride.velocity[0]);
-        let pressing = -dot(seen(aside(minus(before, goes), normal)), normal);
+        let pressing = -dot(seen(acceleration, &ride, aside(minus(before, goes), normal)), normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
@@ -87,22 +84,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             self.lead_on(&lead, &mut onward, None);
             return onward;
         }
-        let drive = seen(slip);
-        let pressing = -dot(drive, normal);
-        let landing = Landing {
-            beside,
-            during,
-            surface,
-            ride,
-            incoming,
-            pressing,
-            came,
-            slip,
-            after,
-            drive,
-            acceleration,
-            friction: mixed.friction,
-        };
+        let friction = mixed.friction;
+        let landing = Landing { beside, during, surface, ride, incoming, came, slip, after, acceleration, friction };
         self.stay(path, meeting, &lead, landing)
     }
 
@@ -137,12 +120,15 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The way on of a particle that a hit brings to rest on a surface: along that and with it, for the time that is left.
     #[inline(always)]
     fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing) -> Path {
-        let Landing { beside, during, surface, ride, incoming, pressing, came, slip, after, .. } = landing;
+        let Landing { beside, during, surface, ride, incoming, came, slip, after, .. } = landing;
         if let (Some(left), Some(ride)) = (&mut self.left, &ride) {
             **left = plus(**left, minus(ride.velocity[1], ride.velocity[0]));
         }
         let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
-        let drive = along(landing.drive, meeting.hit.normal, pressing);
+        let normal = meeting.hit.normal;
+        let drive = seen(landing.acceleration, &ride, slip);
+        let pressing = -dot(drive, normal);
+        let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: landing.friction }.after(rest);
         let stays = is_zero(slip) && is_zero(end);
         let mut onward = if let Some(ride) = ride {
@@ -203,6 +189,11 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         }
         self.walls.carry(&Segment::waiting(chord.from, self.radius, [chord.during[0], now]))
     }
+}
+
+/// An acceleration as what takes along sees it that so fast a slip goes along: without its own, and Coriolis's.
+fn seen(acceleration: Vec3, ride: &Option<Ride>, slip: Vec3) -> Vec3 {
+    ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration_of(slip)))
 }
 
 /// Tells whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface.
