@@ -464,16 +464,17 @@ pub(crate) fn on_surface(
     own: Option<u16>,
     surface: Option<u16>,
 ) -> Mixed {
-    let surface = of(materials, surface);
-    let elasticity = surface.elasticity.map_or(elasticity, |other| sqrt(elasticity * other));
+    let (surface, elasticity) = (of(materials, surface), max(elasticity, 0.0));
+    let elasticity = surface.elasticity.map_or(elasticity, |other| sqrt(elasticity * max(other, 0.0)));
     Mixed { elasticity, friction: friction(of(materials, own), surface) }
 }
 
 /// Two particles with their elasticities and materials.
 pub(crate) fn of_two(materials: &dyn MaterialList, elasticity: [f32; 2], material: [Option<u16>; 2]) -> Mixed {
-    let [a, b] = elasticity;
-    // Two that are alike keep just theirs, to the bit. An elasticity that is no number bounces nobody.
-    let elasticity = if a == b { max(a, 0.0) } else { sqrt(max(a * b, 0.0)) };
+    // An elasticity that is no number bounces nobody.
+    let [a, b] = elasticity.map(|elasticity| max(elasticity, 0.0));
+    // Two that are alike keep just theirs, to the bit.
+    let elasticity = if a == b { a } else { sqrt(a * b) };
     Mixed { elasticity, friction: friction(of(materials, material[0]), of(materials, material[1])) }
 }
 

@@ -221,7 +221,7 @@ fn a_heavy_bob_swings_in_its_time() {
             }
         }
     }
-    assert!(failures.is_empty() && swung > cases / 4, "{} of {swung} {failures:#?}", failures.len());
+    assert!(failures.is_empty() && swung > 200, "{} of {swung} {failures:#?}", failures.len());
 }
 
 /// However heavy a bob is for its rope, and in however few sub-steps: it goes on to swing as wide as it did, its energy stays, and links are met.

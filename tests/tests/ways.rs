@@ -29,8 +29,11 @@ impl<C: Collider> Collider for Silent<C> {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         self.0.contacts(center, reach, at, visit);
     }
-    fn carry(&self, way: &Segment) -> Vec3 {
-        self.0.carry(way)
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        self.0.carry(point, radius, during)
+    }
+    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+        self.0.carry_on(way)
     }
     fn ride(&self, seat: &Segment) -> Option<Ride> {
         self.0.ride(seat)

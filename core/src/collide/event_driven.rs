@@ -369,8 +369,7 @@ impl EventDriven<'_> {
             self.report.caps.bounces += 1;
         }
         let during = [self.instant(event.since), self.end];
-        self.ends[0][row] =
-            self.obstacles.colliders.carry(&Segment::waiting(self.starts[0][row], self.radius[row], during));
+        self.ends[0][row] = self.obstacles.colliders.carry(self.starts[0][row], self.radius[row], during);
         self.ends[1][row] = self.starts[1][row];
         self.events.set(row, NextEvent { waits: 1, ..event });
     }

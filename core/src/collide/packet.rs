@@ -262,7 +262,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let acceleration = leads.map_or(mean, |leads| leads.onward(mean));
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
-        let outgoing = incoming.simd_lt(zero).select(max(negated(incoming) * self.elasticity, zero), incoming);
+        let outgoing = incoming.simd_lt(zero).select(negated(incoming) * max(self.elasticity, zero), incoming);
         let (beside, is_free) = self.set_off(paths, cubics, meetings, walls, incoming);
         let onward = slowed(outgoing, acceleration.dot(beside - place));
         let pressing = negated(acceleration.dot(normal));

@@ -53,7 +53,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let (place, before) = (meeting.place, path.velocity(meeting.time));
         let incoming = dot(minus(before, surface), normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
-        let outgoing = if incoming < 0.0 { max(-incoming * mixed.elasticity, 0.0) } else { incoming };
+        let outgoing = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
         let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
@@ -127,7 +127,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
         let normal = meeting.hit.normal;
         let drive = seen(landing.acceleration, &ride, slip);
-        let pressing = -dot(drive, normal);
+        // What friction has braked may be pressed no more.
+        let pressing = max(-dot(drive, normal), 0.0);
         let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: landing.friction }.after(rest);
         let stays = is_zero(slip) && is_zero(end);
@@ -187,7 +188,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             }
             back *= 4.0;
         }
-        self.walls.carry(&Segment::waiting(chord.from, self.radius, [chord.during[0], now]))
+        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
     }
 }
 

@@ -83,7 +83,7 @@ impl Straight<'_, '_> {
             self.rebound(path, &way, hit);
         }
         self.report.caps.bounces += 1;
-        path.x1 = self.walls.carry(&Segment::waiting(path.x0, self.radius, path.during));
+        path.x1 = self.walls.carry(path.x0, self.radius, path.during);
         path.v1 = path.v0;
         Some(PendingDeath::Lives)
     }
@@ -98,7 +98,7 @@ impl Straight<'_, '_> {
         let (elasticity, Obstacles { materials, mixing, .. }) = (tile.attributes.elasticity[row], tile.obstacles);
         let mixed = match mixing {
             Some(Mixing(on_surface)) => on_surface(materials, elasticity, own, hit.material),
-            None => Mixed { elasticity, friction: Friction::NONE },
+            None => Mixed { elasticity: max(elasticity, 0.0), friction: Friction::NONE },
         };
         let during = [between(path.during, hit.time), path.during[1]];
         let (place, rest) = (way.at(hit.time), (during[1] - during[0]).seconds());
@@ -107,7 +107,7 @@ impl Straight<'_, '_> {
         let relative = minus(before, hit.velocity);
         let (incoming, pressing) = (dot(relative, normal), -dot(acceleration, normal));
         // Where velocities say that it leaves what the way meets, it has come back meanwhile, or rests.
-        let bounced = if incoming < 0.0 { max(-incoming * mixed.elasticity, 0.0) } else { incoming };
+        let bounced = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * bounced < RESTING * tile.dt.seconds() * pressing);
         let outgoing = if rests { 0.0 } else { bounced };
         let came = along(relative, normal, -incoming);
@@ -148,10 +148,6 @@ impl Straight<'_, '_> {
     /// the way began, or where that is carried to.
     fn set_off(&self, way: &Segment, hit: &Hit, place: Vec3, during: [Time; 2]) -> Vec3 {
         let aside = Segment { to: along(place, hit.normal, 2.0 * hit.slack), during, ..*way };
-        if self.walls.first_hit(&aside).is_none() {
-            aside.to
-        } else {
-            self.walls.carry(&Segment { to: way.from, ..aside })
-        }
+        if self.walls.first_hit(&aside).is_none() { aside.to } else { self.walls.carry(way.from, self.radius, during) }
     }
 }

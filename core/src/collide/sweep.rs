@@ -193,7 +193,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             path = self.rebound(&path, &meeting);
         }
         self.report.caps.bounces += 1;
-        let position = self.walls.carry(&Segment::waiting(path.x0, self.radius, path.during));
+        let position = self.walls.carry(path.x0, self.radius, path.during);
         Arrival { position, velocity: self.left_or(path.v0), pending_death: PendingDeath::Lives }
     }
 

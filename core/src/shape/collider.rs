@@ -2,7 +2,7 @@
 
 use super::hit::earlier;
 use super::{Aabb, Affine, Clearance, Contact, Face, Facing, Hit, Hulls, Marks, Ride, Segment, Solid};
-use crate::math::along;
+use crate::math::{along, dot, minus};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -101,10 +101,17 @@ pub trait Collider: Sync {
         let _ = (center, reach, at, visit);
     }
 
-    /// Where a ball is that would wait at the beginning of `way`, by the end of that: there, if what moves would run over it and takes it along; else at
-    /// the end of `way`, to which something else may have taken it.
-    fn carry(&self, way: &Segment) -> Vec3 {
-        way.to
+    /// Where a ball that waits at `point` is by the end of a span, if what moves would run over it and takes it along.
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        let _ = (radius, during);
+        point
+    }
+
+    /// The same of a ball that waits at the beginning of `way` and that other things have taken to its end meanwhile: there, or as far beside it as this would run over
+    /// it. None, as by default, of what stands still: nobody is taken through that.
+    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+        let _ = way;
+        None
     }
 
     /// Where a particle that rests is taken by what moves: `seat` leads from it into what it rests on, as that is at its
@@ -238,8 +245,11 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
     }
-    fn carry(&self, way: &Segment) -> Vec3 {
-        (**self).carry(way)
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        (**self).carry(point, radius, during)
+    }
+    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+        (**self).carry_on(way)
     }
     fn ride(&self, seat: &Segment) -> Option<Ride> {
         (**self).ride(seat)
@@ -268,13 +278,20 @@ fn carried(way: &Segment, take: impl Fn(&mut Segment)) -> Vec3 {
     way.to
 }
 
-/// Where one of several things takes a ball along, or lets it be taken by others: what stands still lets nobody through.
+/// Where one of several things takes a ball along, or lets others take it.
 fn taken(thing: &(impl Collider + ?Sized), way: &Segment) -> Vec3 {
-    if way.from == way.to || thing.moves() {
-        return thing.carry(way);
+    let Segment { from, to, radius, during } = *way;
+    if from == to {
+        return thing.carry(from, radius, during);
     }
-    let through = thing.first_hit(way);
-    through.map_or(way.to, |hit| along(way.at(hit.time), hit.normal, 2.0 * hit.slack))
+    // What stands still leaves it what leads along the surface.
+    let held = || {
+        thing.first_hit(way).map_or(to, |hit| {
+            let across = dot(minus(way.at(hit.time), to), hit.normal);
+            along(to, hit.normal, across + 2.0 * hit.slack)
+        })
+    };
+    thing.carry_on(way).unwrap_or_else(held)
 }
 
 impl<T: Collider> Collider for [T] {
@@ -299,8 +316,17 @@ impl<T: Collider> Collider for [T] {
         let bounds = Aabb { min: center - reach, max: center + reach };
         self.iter().filter(|c| c.may_touch(&bounds)).for_each(|c| c.contacts(center, reach, at, visit));
     }
-    fn carry(&self, way: &Segment) -> Vec3 {
-        carried(way, |way| self.iter().for_each(|c| way.to = taken(c, way)))
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        self.carry_on(&Segment::waiting(point, radius, during)).unwrap_or(point)
+    }
+    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+        Some(carried(way, |way| {
+            for c in self {
+                if c.may_touch(&way.bounds()) {
+                    way.to = taken(c, way);
+                }
+            }
+        }))
     }
     fn ride(&self, seat: &Segment) -> Option<Ride> {
         let bounds = seat.bounds();
@@ -334,8 +360,11 @@ macro_rules! lists {
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.as_slice().contacts(center, reach, at, visit);
             }
-            fn carry(&self, way: &Segment) -> Vec3 {
-                self.as_slice().carry(way)
+            fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+                self.as_slice().carry(point, radius, during)
+            }
+            fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+                self.as_slice().carry_on(way)
             }
             fn ride(&self, seat: &Segment) -> Option<Ride> {
                 self.as_slice().ride(seat)
@@ -391,12 +420,15 @@ macro_rules! tuples {
                     $name.contacts(center, reach, at, visit);
                 })+
             }
-            fn carry(&self, way: &Segment) -> Vec3 {
+            fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+                self.carry_on(&Segment::waiting(point, radius, during)).unwrap_or(point)
+            }
+            fn carry_on(&self, way: &Segment) -> Option<Vec3> {
                 #[allow(non_snake_case)]
                 let ($($name,)+) = self;
-                carried(way, |way| {
+                Some(carried(way, |way| {
                     $(way.to = taken($name, way);)+
-                })
+                }))
             }
             fn ride(&self, seat: &Segment) -> Option<Ride> {
                 #[allow(non_snake_case)]

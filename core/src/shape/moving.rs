@@ -1,7 +1,7 @@
 //! Walls that move as a script says: mills, pistons, conveyors.
 
 use super::{Aabb, Affine, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Ride, Segment};
-use crate::math::{clamp, high, largest, length, low, max, sqrt};
+use crate::math::{along, clamp, dot, high, largest, length, low, max, sqrt};
 use crate::motion::{EVERYWHERE, Frame, Motion, Script};
 use crate::time::Time;
 use glam::Vec3;
@@ -18,7 +18,7 @@ const MAX_PIECES: u32 = 8;
 /// faces, off each, and once more.
 const MAX_PUSHES: u32 = 4;
 
-/// A collider that moves as a script says.
+/// A collider that moves as a script says. What it consists of should stand still in it: what rests on that is taken along by this motion alone.
 ///
 /// ```
 /// use pointmass::motion::{Key, Motion};
@@ -185,26 +185,28 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
         });
     }
 
-    fn carry(&self, way: &Segment) -> Vec3 {
-        let Some(motion) = &self.motion else { return self.collider.carry(way) };
-        let Segment { radius, during, .. } = *way;
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        let Some(motion) = &self.motion else { return self.collider.carry(point, radius, during) };
+        let way = Segment::waiting(point, radius, during);
+        if self.first_hit(&way).is_none() {
+            return point;
+        }
         let [start, end] = during.map(|instant| motion.frame(instant));
+        let from = start.local(point);
+        self.pushed_off(&way, from, &end, end.world(from))
+    }
+
+    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+        let Some(motion) = &self.motion else { return self.collider.carry_on(way) };
+        let [start, end] = way.during.map(|instant| motion.frame(instant));
         let from = start.local(way.from);
         // Whom something else takes along goes as that goes, and not straight: it counts where it begins and ends.
-        let taken = Segment { from, to: end.local(way.to), radius, during: [during[1]; 2] };
-        let waits = way.from == way.to;
-        if !(if waits { self.first_hit(way) } else { self.collider.first_hit(&taken) }).is_some() {
-            return way.to;
-        }
-        let mut place = end.world(from);
-        // Rounding may have put it behind what it was nearer to than that.
-        for _ in 0..MAX_PUSHES {
-            let moved = Segment { to: end.local(place), ..taken };
-            let Some(hit) = self.collider.first_hit(&moved) else { break };
-            let rounding = Segment { to: place, ..*way }.slack(size(&end));
-            place += end.turn * hit.normal * (2.0 * (hit.slack + rounding));
-        }
-        place
+        let taken = Segment { from, to: end.local(way.to), radius: way.radius, during: [way.during[1]; 2] };
+        let Some(hit) = self.collider.first_hit(&taken) else { return Some(way.to) };
+        // What leads along the surface is left to it.
+        let normal = end.turn * hit.normal;
+        let across = max(dot(end.world(from) - way.to, normal), 0.0);
+        Some(self.pushed_off(way, from, &end, along(way.to, normal, across)))
     }
 
     fn ride(&self, seat: &Segment) -> Option<Ride> {
@@ -237,6 +239,20 @@ impl<C: Mapped, M: Script> Mapped for Moving<C, M> {
         if self.motion.is_none() {
             self.collider.image(map, bounds, visit);
         }
+    }
+}
+
+impl<C: Collider, M> Moving<C, M> {
+    /// A place on the side that a ball has been on, `from` in the frame, of which rounding may have put it behind what it was nearer to than that.
+    fn pushed_off(&self, way: &Segment, from: Vec3, end: &Frame, mut place: Vec3) -> Vec3 {
+        let Segment { radius, during, .. } = *way;
+        for _ in 0..MAX_PUSHES {
+            let moved = Segment { from, to: end.local(place), radius, during: [during[1]; 2] };
+            let Some(hit) = self.collider.first_hit(&moved) else { break };
+            let rounding = Segment { to: place, ..*way }.slack(size(end));
+            place += end.turn * hit.normal * (2.0 * (hit.slack + rounding));
+        }
+        place
     }
 }
 

@@ -237,8 +237,12 @@ impl<C: Collider> Collider for Nearby<'_, C> {
         self.near(&bounds, |thing| thing.contacts(center, reach, at, visit));
     }
 
-    fn carry(&self, way: &Segment) -> Vec3 {
-        self.of.things.carry(way)
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        self.of.things.carry(point, radius, during)
+    }
+
+    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+        self.of.things.carry_on(way)
     }
 
     fn ride(&self, seat: &Segment) -> Option<Ride> {
@@ -306,8 +310,12 @@ impl<C: Collider> Collider for Scenery<C> {
         self.anywhere().contacts(center, reach, at, visit);
     }
 
-    fn carry(&self, way: &Segment) -> Vec3 {
-        self.anywhere().carry(way)
+    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+        self.anywhere().carry(point, radius, during)
+    }
+
+    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+        self.anywhere().carry_on(way)
     }
 
     fn ride(&self, seat: &Segment) -> Option<Ride> {

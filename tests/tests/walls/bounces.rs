@@ -1,7 +1,7 @@
 //! How points and balls bounce and come to rest.
 
 use pointmass::shape::{Collider, Cuboid, Plane};
-use pointmass::{Gravity, Meetings, Method, Particle, Scene, Time, Vec3};
+use pointmass::{Constraint, ContactMaterial, Distance, Gravity, Meetings, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{G, f64s, gap, often, run, started};
 
 const FLOOR: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
@@ -104,15 +104,21 @@ fn elasticities_below_zero_are_none() {
         for (radius, pull) in
             [(0.0, Gravity::EARTH), (0.1, Gravity::EARTH), (0.0, Gravity { acceleration: Vec3::ZERO })]
         {
+            let materials = [ContactMaterial { elasticity: (i % 3 > 0).then_some(0.5), friction: None }];
+            let rod = Distance::rod([0, 1], 0.37);
+            let bonds: [&dyn Constraint; 2] = [&(), &rod];
             let [none, below] = [0.0, -0.4].map(|elasticity| {
                 let start = [0.0f32, 1.0, 2.0, 3.0].map(|at| Particle {
                     position: Vec3::new(0.2 * at - 0.3, 0.5 + 0.1 * at, 0.1 * at),
                     velocity: Vec3::new(0.3 * at, -3.0 - at, 0.5),
                     radius,
-                    elasticity,
+                    // Some are below zero by more than others.
+                    elasticity: elasticity * (1.0 + at),
+                    material: Some(0),
                     ..Particle::REST
                 });
                 let parts = Scene { start: &start, forces: &pull, colliders: colliders[i % 2], ..Scene::EMPTY };
+                let parts = Scene { materials: &materials, constraints: bonds[i / 3 % 2], ..parts };
                 let scene = Scene {
                     integrator: method.integrator(),
                     meetings: [Meetings::Through, Meetings::IMPULSE][i / 2 % 2],

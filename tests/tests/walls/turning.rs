@@ -2,8 +2,8 @@
 
 use pointmass::force::Friction;
 use pointmass::motion::{Motion, Script};
-use pointmass::shape::{Aabb, Collider, Cuboid, Mesh, Moving, Plane, Scenery, Shape, Surface, Triangle};
-use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Vec3};
+use pointmass::shape::{Aabb, Collider, Cuboid, Hit, Mesh, Moving, Plane, Scenery, Segment, Shape, Surface, Triangle};
+use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{Random, often, run, started};
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
@@ -133,4 +133,67 @@ fn what_is_in_a_room_of_walls_that_move_as_one_stays_in_it() {
         }
     }
     assert!(escaped.is_empty(), "{} {escaped:#?}", escaped.len());
+}
+
+/// What one thing takes along the others hold, in whatever order they are listed: two that move, one that moves beside one that stands still, and one of a user's own that
+/// says nothing but when it is hit.
+#[test]
+fn what_is_carried_by_one_is_held_by_the_others() {
+    struct Own(Plane);
+    impl Collider for Own {
+        fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+            self.0.first_hit(segment)
+        }
+    }
+    let moving = |plane, drift| Moving::new(plane, &EVERYWHERE, Motion { drift, ..Motion::STILL });
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let wall = Plane { point: Vec3::X, normal: Vec3::X };
+    let (lift, piston, belt) =
+        (moving(floor, Vec3::Y), moving(wall, Vec3::NEG_X), moving(floor, Vec3::new(1.0, 1.0, 0.0)));
+    let during = [Time::ZERO, Time::from_seconds(0.1)];
+    for radius in [0.0, 0.05] {
+        let from = Vec3::new(0.95 - radius, 0.001 + radius, 0.3);
+        let wanted = [Vec3::new(0.9 - radius, 0.1 + radius, 0.3), Vec3::new(1.0 - radius, 0.1 + radius, 0.3)];
+        let pairs: [([&dyn Collider; 2], Vec3); 3] =
+            [([&lift, &piston], wanted[0]), ([&belt, &wall], wanted[1]), ([&belt, &Own(wall)], wanted[1])];
+        for (pair, want) in pairs {
+            for pair in [pair, [pair[1], pair[0]]] {
+                let there = [pair.carry(from, radius, during), (pair[0], pair[1]).carry(from, radius, during)];
+                for there in there {
+                    // On the side that it has been on, and no farther away than what it was away from it.
+                    let off = there - want;
+                    assert!(off.x <= 0.0 && off.y >= 0.0 && off.length() < 0.06, "{there}, not {want}");
+                }
+            }
+        }
+    }
+}
+
+/// Friction that brakes what a turning wall has been pressed by leaves it to go: it had been driven along by a force that presses no more.
+#[test]
+fn what_friction_brakes_on_a_wall_that_turns_away_is_not_driven_along() {
+    let wall = Plane { point: Vec3::X, normal: Vec3::X };
+    let collider = Moving::new(wall, &EVERYWHERE, Motion { axis: Vec3::Z, spin: 0.5, ..Motion::STILL });
+    for (mu, y) in [(20.0, 0.3f32), (2.0, 0.05), (5.0, 0.2)] {
+        for &method in Method::ALL {
+            let friction = Some(Friction { static_: mu, kinetic: mu });
+            let materials = [ContactMaterial { elasticity: None, friction }];
+            let omega = Vec3::Z * core::f32::consts::PI;
+            let from = Vec3::new(1.0 + 1e-5, y, 0.0);
+            let start = [Particle {
+                position: from,
+                velocity: Vec3::X * -3.0,
+                elasticity: 0.0,
+                material: Some(0),
+                ..Particle::REST
+            }];
+            let parts = Scene { start: &start, colliders: &collider, materials: &materials, ..Scene::EMPTY };
+            let scene = Scene { integrator: method.integrator(), ..parts };
+            let mut system = started(&scene, 1, 0);
+            run(&mut system, &scene, 1.0 / 60.0, 1);
+            let there = system.particles();
+            let slip = there.velocity[0] - omega.cross(there.position[0]);
+            assert!(slip.length() < 0.2, "{method} {mu} {y}: {slip}");
+        }
+    }
 }
