@@ -16,13 +16,13 @@ use glam::Vec3;
 const MAX_RETREATS: u32 = 12;
 
 /// A particle that a hit brings to rest on a surface.
-struct Landing {
+struct Landing<'r> {
     /// Where it is set off to, and from when to when it goes on.
     beside: Vec3,
     during: [Time; 2],
     /// How the surface moves there \[m/s\], and where it takes it, if it moves.
     surface: Vec3,
-    ride: Option<Ride>,
+    ride: Option<&'r Ride>,
     /// The speed at which it parted from the surface before the hit \[m/s\].
     incoming: f32,
     /// Its velocity along the surface, as seen from there, before friction and after it, and in the world after all \[m/s\].
@@ -58,12 +58,13 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
+        let ride = ride.as_ref();
         let goes = ride.map_or(surface, |ride| ride.velocity[0]);
-        let pressing = -dot(seen(acceleration, &ride, aside(minus(before, goes), normal)), normal);
+        let pressing = -dot(seen(acceleration, ride, aside(minus(before, goes), normal)), normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
-        let whole = match &ride {
+        let whole = match ride {
             Some(ride) if rests => aside(minus(ride.velocity[0], surface), normal),
             _ => Vec3::ZERO,
         };
@@ -119,14 +120,14 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 
     /// The way on of a particle that a hit brings to rest on a surface: along that and with it, for the time that is left.
     #[inline(always)]
-    fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing) -> Path {
+    fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing<'_>) -> Path {
         let Landing { beside, during, surface, ride, incoming, came, slip, after, .. } = landing;
-        if let (Some(left), Some(ride)) = (&mut self.left, &ride) {
+        if let (Some(left), Some(ride)) = (&mut self.left, ride) {
             **left = plus(**left, minus(ride.velocity[1], ride.velocity[0]));
         }
         let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
         let normal = meeting.hit.normal;
-        let drive = seen(landing.acceleration, &ride, slip);
+        let drive = seen(landing.acceleration, ride, slip);
         // What friction has braked may be pressed no more.
         let pressing = max(-dot(drive, normal), 0.0);
         let drive = along(drive, normal, pressing);
@@ -193,7 +194,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 }
 
 /// An acceleration as what takes along sees it that so fast a slip goes along: without its own, and Coriolis's.
-fn seen(acceleration: Vec3, ride: &Option<Ride>, slip: Vec3) -> Vec3 {
+fn seen(acceleration: Vec3, ride: Option<&Ride>, slip: Vec3) -> Vec3 {
     ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration_of(slip)))
 }
 
