@@ -72,7 +72,7 @@ pub fn appearance(state: &State<'_>, row: usize) -> Option<Appearance> {
 }
 
 /// Looks at particles one after the other: the same as [`appearance`] of each, several times as fast where those who follow each other are often of
-/// the same material, as what is known of the last one is at hand.
+/// the same few materials, which are at hand then.
 #[allow(missing_debug_implementations)]
 pub struct Looks<'s, 'a> {
     state: &'s State<'a>,
@@ -80,7 +80,7 @@ pub struct Looks<'s, 'a> {
 }
 
 impl<'s, 'a> Looks<'s, 'a> {
-    /// Of the particles of a state.
+    /// The looks of a state's particles.
     #[must_use]
     pub fn of(state: &'s State<'a>) -> Self {
         Self { state, palette: Palette::of(state.materials) }

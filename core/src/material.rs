@@ -285,7 +285,7 @@ pub(crate) struct Palette<'a> {
     at_hand: [Option<(u16, Material<'a>)>; AT_HAND],
 }
 
-/// How many materials are at hand: on chips, which have little room on the stack, one.
+/// The number of materials at hand: on chips, which have little room on the stack, one.
 const AT_HAND: usize = if cfg!(one_by_one) { 1 } else { 4 };
 
 impl<'a> Palette<'a> {

@@ -75,7 +75,7 @@ impl<B: Storage> System<B> {
         Ok(())
     }
 
-    /// Moves the world on by `dt`. It cannot fail, does not panic, and its work is bounded; whatever a bound cut
+    /// Moves the world on by `dt`; in no time nobody moves, and only reapers and what writes columns are asked. It cannot fail, does not panic, and its work is bounded; whatever a bound cut
     /// short is counted in the report.
     pub fn step(&mut self, scene: &Scene<'_>, dt: Time) -> Report {
         self.step_observed(scene, dt, &mut ())

@@ -112,7 +112,7 @@ fn unwritten(value: &JsValue) -> Option<&'static str> {
     Some(UNWRITTEN[kind])
 }
 
-/// What a value is, in a message, and what to do about it.
+/// The kind of a value, in a message, and what to do about it.
 fn named(value: &JsValue) -> String {
     const LONGEST: usize = 60;
     if value.is_null() || value.is_undefined() {

@@ -12,7 +12,7 @@ use pointmass::scene::Model;
 use pointmass::{Color, RigidBox};
 use wasm_bindgen::JsError;
 
-/// What most calls return: a list, or an error, if there is not enough memory for it.
+/// The result of most calls: a list, or an error, if there is not enough memory for it.
 pub(crate) type Listed<T = Float32Array> = Result<T, JsError>;
 
 /// Bytes that a corner or a triangle of a body takes at most while it is drawn.

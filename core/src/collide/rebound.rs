@@ -1,4 +1,4 @@
-//! What hits do to a particle on its way: it bounces, or comes to rest on the surface, along which it slides and with which it goes.
+//! The answer to a hit on a particle's way: it bounces, or comes to rest on the surface, along which it slides and with which it goes.
 
 use super::lead::Lead;
 use super::path::Path;

@@ -135,7 +135,7 @@ fn what_is_in_a_room_of_walls_that_move_as_one_stays_in_it() {
     assert!(escaped.is_empty(), "{} {escaped:#?}", escaped.len());
 }
 
-/// What one thing takes along the others hold, in whatever order they are listed: two that move, one that moves beside one that stands still, and one of a user's own that
+/// Whom one thing takes along the others hold, in whatever order they are listed: two that move, one that moves beside one that stands still, and one of a user's own that
 /// says nothing but when it is hit.
 #[test]
 fn what_is_carried_by_one_is_held_by_the_others() {

@@ -1,6 +1,6 @@
 //! Sentences for what wasm-bindgen's glue would fail at in words of its own: a call before the module is there, or of what has been freed.
 
-/// What is added.
+/// The functions that are added.
 const HELPERS: &str = r#"
 function alive(object, kind) {
     if (!(object instanceof kind)) {

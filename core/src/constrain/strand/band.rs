@@ -117,7 +117,7 @@ where
     }
 }
 
-/// What is kept of a column.
+/// The numbers that are kept of a column.
 #[inline(always)]
 fn column<const LANES: usize>(entries: &[[f32; LANES]], first: usize) -> &[[f32; LANES]] {
     &entries[first * COLUMN..][..COLUMN]
