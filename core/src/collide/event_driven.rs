@@ -1,11 +1,13 @@
 //! The step of particles that meet, worked through in the order of time.
 
+use super::air::{Air, Onward};
 use super::images::first_touch_of_images;
 use super::meeting::{Answer, Touch};
 use super::path::{Path, between};
 use super::queue::{GONE, NEVER, NOBODY, NextEvent, Queue, WALL};
 use super::sweep::{Meeting, Sweep};
 use super::tile::Obstacles;
+use crate::force::Attributes;
 use crate::index::{Room, SpatialIndex, between as shortest};
 use crate::material::of_two;
 use crate::math::{high, largest, length, max};
@@ -25,6 +27,9 @@ const FOUND_A_BOUNCE: u32 = 1 << 11;
 /// A step whose meetings are worked through one after the other.
 pub(super) struct EventDriven<'a> {
     pub(super) obstacles: Obstacles<'a>,
+    /// The forces that brake them, as far as is known.
+    pub(super) air: Option<Air<'a>>,
+    pub(super) attributes: &'a Attributes<'a>,
     pub(super) dt: Time,
     pub(super) end: Time,
     /// Events count in 2 to this power ticks.
@@ -295,7 +300,16 @@ impl EventDriven<'_> {
         let acceleration = paths.map(|path| path.acceleration());
         let slack = self.slack(row, other);
         let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };
-        let Answer { velocity: after, way, ends, slid } = touch.answer(self.dt.seconds(), (self.end - now).seconds());
+        let [dt, rest] = [self.dt, self.end - now].map(Time::seconds);
+        let mut answer = touch.answer(dt, rest);
+        if let Some(air) = self.air {
+            let onward = |i: usize| Onward { place: paths[i].x0, now, rest, velocity: answer.velocity[i] };
+            let braked =
+                |i: usize| air.braking(self.attributes, rows[i]).acceleration(&paths[i], acceleration[i], &onward(i));
+            let acceleration = [0, 1].map(|i| if waits[i] { acceleration[i] } else { braked(i) });
+            answer = Touch { acceleration, ..touch }.answer(dt, rest);
+        }
+        let Answer { velocity: after, way, ends, slid } = answer;
         if let Some(slid) = &slid {
             self.observer.slid(slid);
         }
@@ -407,6 +421,7 @@ impl EventDriven<'_> {
             elasticity: self.elasticity[row],
             material: self.material[row].checked_sub(1),
             left: None,
+            air: self.air.map(|air| air.braking(self.attributes, row)),
             dt: self.dt.seconds(),
             report: self.report,
             observer: Some(self.observer),

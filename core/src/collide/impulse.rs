@@ -1,5 +1,6 @@
 //! Particles that meet, answered by impulses in the order in which they meet.
 
+use super::air::Air;
 use super::event_driven::EventDriven;
 use super::queue::Queue;
 use super::swept::Swept;
@@ -26,6 +27,8 @@ pub(super) fn follow(swept: Swept<'_, '_>) {
     let unit = (tile.dt.ticks() >> 31).checked_ilog2().map_or(0, |bits| bits + 1);
     let mut all = EventDriven {
         obstacles: tile.obstacles,
+        air: Air::around(&tile.obstacles),
+        attributes: &tile.attributes,
         dt: tile.dt,
         end: tile.now + tile.dt,
         unit,

@@ -3,6 +3,7 @@
 //! Every number is made as `Sweep` makes it, in the same order, and so has the same bits. Whoever needs more than this is left
 //! to that: more hits in a step than are found here, a place that is not free.
 
+mod airs;
 mod hits;
 mod leads;
 mod paths;
@@ -13,6 +14,7 @@ use super::sweep::{LAIN, RESTING};
 use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, negated, not};
 use crate::shape::Face;
 use crate::time::Time;
+pub(super) use airs::Airs;
 use glam::Vec3;
 use hits::{Hits, Meetings, Seats, Segments, Walls};
 use leads::Leads;
@@ -30,9 +32,21 @@ pub(super) struct Riders<F, const POINTS: bool> {
     /// True if there are springs, whose method leads beyond parabolas.
     pub(super) swing: bool,
     pub(super) elasticity: F,
+    /// What brakes them, if it depends on their velocities.
+    pub(super) air: Medium<F>,
     /// Coefficients of friction.
     pub(super) at_rest: F,
     pub(super) kinetic: F,
+}
+
+/// What is known of the forces that a hit changes.
+#[derive(Clone, Copy)]
+pub(super) enum Medium<F> {
+    /// There are none.
+    Thin,
+    Steady(Airs<F>),
+    /// Who is hit is left to those who know more.
+    Any,
 }
 
 /// The number of hits of a particle in a step are found in packets.
@@ -209,6 +223,9 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         clear = clear & not(meetings.unclear);
         let (mut left, mut hits, mut rounds) = ([[step.ticks() as i32; LANES]; PARTS], [0; ROUNDS], 1);
         let mut astray = clear & not(clear);
+        if let Medium::Any = self.air {
+            clear = clear & not(hit);
+        }
         for hits in &mut hits {
             hit = hit & clear;
             if !hit.any() || rounds >= max_bounces {
@@ -259,18 +276,18 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let rest = rest / all(Time::SECOND.ticks() as f32);
         let leads = self.swing.then(|| Leads::of(cubics, paths.time, s, normal));
         let mean = paths.acceleration();
-        let acceleration = leads.map_or(mean, |leads| leads.onward(mean));
+        let mean = leads.map_or(mean, |leads| leads.onward(mean));
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
         let outgoing = incoming.simd_lt(zero).select(negated(incoming) * max(self.elasticity, zero), incoming);
+        let came = before - normal * incoming;
+        let slip = Vectors::splat(like, Vec3::ZERO) + (came + self.answer(came, outgoing - incoming));
+        let acceleration = self.braked(paths, mean, slip + normal * outgoing, rest);
         let (beside, is_free) = self.set_off(paths, cubics, meetings, walls, incoming);
         let onward = slowed(outgoing, acceleration.dot(beside - place));
         let pressing = negated(acceleration.dot(normal));
         let rests = pressing.simd_gt(zero)
             & (incoming.simd_ge(zero) | (all(2.0) * onward).simd_lt(all(RESTING * dt) * pressing));
-        let (outgoing, onward) = (outgoing & not(rests), onward & not(rests));
-        let came = before - normal * incoming;
-        let slip = Vectors::splat(like, Vec3::ZERO) + (came + self.answer(came, outgoing - incoming));
         let velocity = slip + normal * onward;
         let x1 = beside + (velocity + acceleration * (all(0.5) * rest)) * rest;
         let x1 = leads.map_or(x1, |leads| leads.beyond(x1));
@@ -278,8 +295,15 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         if !rests.any() {
             return (flying, is_free);
         }
-        let resting = self.rest(paths, meetings, leads, beside, [came, acceleration], [incoming, pressing, rest]);
+        let resting = self.rest(paths, meetings, leads, beside, [came, mean], [incoming, rest]);
         (Paths::select(rests, resting, flying), is_free)
+    }
+
+    /// The mean accelerations in the rests of a step with other velocities, for which those up to then are known.
+    #[inline(always)]
+    fn braked(&self, paths: &Paths<F>, mean: Vectors<F>, velocity: Vectors<F>, rest: F) -> Vectors<F> {
+        let Medium::Steady(airs) = &self.air else { return mean };
+        airs.acceleration([mean, (paths.x1 - paths.x0) / paths.time], velocity, rest)
     }
 
     /// The ways on of those who have come to rest, from beside a face that their velocities are `came` along.
@@ -290,12 +314,14 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         meetings: &Meetings<F>,
         leads: Option<Leads<F>>,
         beside: Vectors<F>,
-        [came, acceleration]: [Vectors<F>; 2],
-        [incoming, pressing, rest]: [F; 3],
+        [came, mean]: [Vectors<F>; 2],
+        [incoming, rest]: [F; 2],
     ) -> Paths<F> {
         let Meetings { hits: Hits { time: s, normal, slack, .. }, place, .. } = *meetings;
         let (zero, still) = (s.all(0.0), Vectors::splat(s, Vec3::ZERO));
         let slip = came + self.answer(came, zero - incoming);
+        let acceleration = self.braked(paths, mean, still + slip + normal * zero, rest);
+        let pressing = max(negated(acceleration.dot(normal)), zero);
         let drive = acceleration + normal * pressing;
         let ([way, end], _) = self.slide(slip, drive, pressing, rest);
         // Falling onto the face anew each step, what has lain on it has not moved at all.

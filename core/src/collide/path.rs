@@ -175,6 +175,12 @@ impl Path {
         if duration > 0.0 { over(minus(self.v1, self.v0), duration) } else { Vec3::ZERO }
     }
 
+    /// Its mean velocity \[m/s\].
+    pub(super) fn mean_velocity(&self) -> Vec3 {
+        let duration = self.duration();
+        if duration > 0.0 { over(minus(self.x1, self.x0), duration) } else { self.v0 }
+    }
+
     /// The straight line between two fractions of its time, for a ball; `cubic` is it as a polynomial.
     #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn piece(&self, cubic: &Cubic, [from, to]: [f32; 2], radius: f32) -> Segment {

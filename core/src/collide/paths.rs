@@ -23,7 +23,7 @@ impl Paths {
     /// [`CURVED`](Self::CURVED).
     ///
     /// Nothing comes to the other side of anything; what a curve would touch between two ends on this side goes unnoticed. In a step of h under an
-    /// acceleration a hits lie within a h²/8 of where they would be, and speeds are as far off as that takes. What rests stays (by the explicit
+    /// acceleration a hits lie within a h²/8 of where they would be, and speeds are as far off as that takes; for the rest of the step what brakes goes on as on the way to the hit. What rests stays (by the explicit
     /// Euler method, whose places lag behind, it hops), slides by Coulomb's law to the order of the step, and goes on as the surface moves where it
     /// meets that; a ledger finds the work of friction on it in its remainder. Springs feed energy into what they let swing along a surface. For balls
     /// that bounce off each other ([`Meetings::IMPULSE`](crate::Meetings::IMPULSE)) paths are curved whatever this says.

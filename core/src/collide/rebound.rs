@@ -1,5 +1,6 @@
 //! The answer to a hit on a particle's way: it bounces, or comes to rest on the surface, along which it slides and with which it goes.
 
+use super::air::Onward;
 use super::lead::Lead;
 use super::path::Path;
 use super::slide::Slide;
@@ -36,7 +37,7 @@ struct Landing<'r> {
 
 impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
-    /// braked by friction, the mean acceleration of the path so far for the time that is left.
+    /// braked by friction, and for the time that is left the mean acceleration of the path so far, less what brakes it no more.
     ///
     /// Apart, so that what it works out is off the stack when the next hit is sought.
     #[inline(never)]
@@ -46,14 +47,21 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
         let during = [path.instant(meeting.time), path.during[1]];
         let lead = self.lead(path, meeting.time, normal);
-        let mut acceleration = path.acceleration();
+        let mut mean = path.acceleration();
         if let Some(lead) = &lead {
-            acceleration = plus(acceleration, lead.acceleration);
+            mean = plus(mean, lead.acceleration);
         }
         let (place, before) = (meeting.place, path.velocity(meeting.time));
         let incoming = dot(minus(before, surface), normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
+        let answered = |surface: Vec3, outgoing: f32| {
+            let came = along(minus(before, surface), normal, -incoming);
+            let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
+            (came, slip, along(plus(surface, slip), normal, outgoing))
+        };
+        let (_, _, bounced) = answered(surface, outgoing);
+        let acceleration = self.braked(path, mean, place, during, bounced);
         let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
@@ -69,10 +77,9 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             _ => Vec3::ZERO,
         };
         let surface = plus(surface, whole);
-        let came = along(minus(before, surface), normal, -incoming);
-        let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
+        let (came, slip, after) = answered(surface, outgoing);
         let Self { id, row, mass, .. } = *self;
-        let (time, closing, after) = (during[0], max(-incoming, 0.0), along(plus(surface, slip), normal, outgoing));
+        let (time, closing) = (during[0], max(-incoming, 0.0));
         let mut told = [before, after];
         self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing], &mut told);
         if let Some(observer) = &mut self.observer {
@@ -86,8 +93,17 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             return onward;
         }
         let friction = mixed.friction;
+        let acceleration = self.braked(path, mean, place, during, after);
         let landing = Landing { beside, during, surface, ride, incoming, came, slip, after, acceleration, friction };
         self.stay(path, meeting, &lead, landing)
+    }
+
+    /// The mean acceleration in the rest of a step with another velocity, for which that up to then is known. What constraints have moved
+    /// is driven by its velocity, which goes on with what is left of it.
+    fn braked(&self, path: &Path, mean: Vec3, place: Vec3, [now, end]: [Time; 2], velocity: Vec3) -> Vec3 {
+        let rest = (end - now).seconds();
+        let air = self.air.filter(|_| self.left.is_none());
+        air.map_or(mean, |air| air.acceleration(path, mean, &Onward { place, now, rest, velocity }))
     }
 
     /// Answers with a hit the velocity that constraints have left, if they have: tells what it was and is. That of the way, which comes in and goes out

@@ -1,5 +1,6 @@
 //! One particle's way through a step: hit by hit.
 
+use super::air::Braked;
 use super::lead::Lead;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
@@ -58,6 +59,8 @@ pub(super) struct Sweep<'a, C: ?Sized = dyn Collider + 'a> {
     /// The velocity that constraints have left it \[m/s\], if they have moved it: such goes straight to where they have put it, and hits answer this
     /// velocity beside that of the way, which it keeps where it meets nothing.
     pub(super) left: Option<&'a mut Vec3>,
+    /// It in the air, if forces may depend on its velocity.
+    pub(super) air: Option<Braked<'a>>,
     /// The step \[s\].
     pub(super) dt: f32,
     pub(super) report: &'a mut Report,
@@ -80,9 +83,10 @@ impl Meeting {
 impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     /// The same past other walls.
     pub(super) fn past<W: Collider>(self, walls: &'a W) -> Sweep<'a, W> {
-        let Self { obstacles, sinks, id, row, radius, mass, elasticity, material, left, dt, report, observer, .. } =
-            self;
-        Sweep { obstacles, walls, sinks, id, row, radius, mass, elasticity, material, left, dt, report, observer }
+        let Self {
+            obstacles, sinks, id, row, radius, mass, elasticity, material, left, air, dt, report, observer, ..
+        } = self;
+        Sweep { obstacles, walls, sinks, id, row, radius, mass, elasticity, material, left, air, dt, report, observer }
     }
 
     /// Its way through the step, if it may touch anything.

@@ -3,7 +3,7 @@
 use super::lead::LeadCode;
 use super::marks::MarkCode;
 use super::path::Path;
-use crate::force::Attributes;
+use crate::force::{Attributes, Force};
 use crate::material::{MaterialList, Mixing};
 use crate::memory::{Layout, Past};
 use crate::reap::PendingDeath;
@@ -18,6 +18,8 @@ pub(crate) struct Obstacles<'a> {
     pub(crate) colliders: &'a dyn Collider,
     pub(crate) sinks: &'a dyn Collider,
     pub(crate) materials: &'a dyn MaterialList,
+    /// The forces that drive particles meanwhile.
+    pub(crate) forces: &'a dyn Force,
     /// The function that mixes them, for straight paths, if there may be any.
     pub(crate) mixing: Option<Mixing>,
     /// How often a particle may bounce in one sub-step.

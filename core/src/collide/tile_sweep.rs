@@ -8,6 +8,7 @@ mod packets;
 mod seek;
 mod ways;
 
+use super::air::Air;
 use super::near::{Balls, Marks as Bits};
 use super::sweep::facing;
 use super::waiting::{List, Queue, ones};
@@ -35,6 +36,8 @@ struct TileSweep<'s, 'a> {
     /// True if surfaces may have friction, or take more of a bounce than particles do by themselves.
     has_materials: bool,
     facing: Facing,
+    /// The forces that brake them, as far as is known.
+    air: Option<Air<'s>>,
     /// True if all that may wait are points for sure.
     are_points: bool,
     report: &'s mut Report,
@@ -61,8 +64,9 @@ pub(crate) fn each_by_itself(tile: &mut Tile<'_>, report: &mut Report, observer:
     let observer: Option<&mut dyn Observer> =
         if observer.attention() > Attention::Nothing { Some(observer) } else { None };
     let (has_sinks, has_materials) = (!tile.obstacles.sinks.is_empty(), tile.obstacles.materials.count() > 0);
+    let air = Air::around(&tile.obstacles);
     let mut tile_sweep =
-        TileSweep { tile: &mut *tile, past, first: 0, has_materials, facing, are_points: false, report, observer };
+        TileSweep { tile: &mut *tile, past, first: 0, has_materials, facing, air, are_points: false, report, observer };
     match (facing, many.zip(outskirts)) {
         (Facing::Face(face), _) if SHORT_WAY && !has_sinks => tile_sweep.go_past(&face),
         (_, Some((many, (face, things)))) if tile_sweep.goes_in_packets() => tile_sweep.go_among(many, face, &things),

@@ -112,8 +112,8 @@ pub trait Force: Sync {
 
     /// Tells whether the force on a particle depends on nothing but its own row and the time. By default it says no, which is always
     /// right; yes is for speed. A step then takes a few
-    /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it. Chips without an operating
-    /// system do not ask.
+    /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it. After a hit it is asked once
+    /// more, for that row alone, so that what brakes a particle does so at its new velocity.
     fn is_local(&self) -> bool {
         false
     }
@@ -263,7 +263,6 @@ macro_rules! sum_of {
             }
             needs
         }
-        #[cfg(not(target_os = "none"))]
         fn is_local(&self) -> bool {
             let $this = self;
             $parts.into_iter().all(|part| part.is_local())
@@ -316,7 +315,6 @@ macro_rules! same_as {
             let $this = self;
             $force.needs()
         }
-        #[cfg(not(target_os = "none"))]
         fn is_local(&self) -> bool {
             let $this = self;
             $force.is_local()

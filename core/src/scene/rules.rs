@@ -223,11 +223,11 @@ impl<'a> Scene<'a> {
 
     /// What the paths of its particles are held against.
     pub(crate) fn obstacles(&self) -> Obstacles<'a> {
-        let Self { colliders, sinks, materials, max_bounces, .. } = *self;
+        let Self { colliders, sinks, materials, forces, max_bounces, .. } = *self;
         let lead = self.springs.code().filter(|_| !self.springs.list().is_empty()).map(|code| code.lead);
         let marks = self.constraints.code().map(|_| MarkCode::ALL);
         let mixing = materials.mixing();
-        Obstacles { colliders, sinks, materials, mixing, max_bounces, lead, marks }
+        Obstacles { colliders, sinks, materials, forces, mixing, max_bounces, lead, marks }
     }
 }
 

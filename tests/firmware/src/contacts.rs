@@ -3,11 +3,13 @@
 //! Balls of many sizes, one of them pinned, fall through each other's way into a room, rub and bounce: by each response,
 //! with an index and without.
 
-use pointmass::force::Friction;
+use pointmass::force::{Friction, QuadraticDrag, Uniform, Wind};
 use pointmass::index::{IndexChoice, Structure};
 use pointmass::scene::Position;
-use pointmass::shape::Cuboid;
-use pointmass::{ContactMaterial, Force, Gravity, Inline, Particle, Penalty, Response, Scene, System, Time, Vec3};
+use pointmass::shape::{Collider, Cuboid, Plane};
+use pointmass::{
+    ContactMaterial, Drag, Force, Gravity, Inline, Meetings, Particle, Penalty, Response, Scene, System, Time, Vec3,
+};
 
 /// The hashes in the form of `all` in `expected.rs`.
 pub(crate) const EXPECTED: &str = include_str!("../../contacts.txt");
@@ -31,6 +33,8 @@ impl Memory {
     }
 }
 
+const ROOM: Cuboid = Cuboid { min: Vec3::ZERO, max: Vec3::new(1.72, 3.0, 1.72) };
+
 const PENALTY: Penalty =
     Penalty { stiffness: 500.0, damping: 0.1, friction: Friction { static_: 0.3, kinetic: 0.3 }, reach: 0.4 };
 
@@ -45,7 +49,6 @@ const RESPONSES: [([&str; 2], Response); 3] = [
 pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     let Memory { start, system } = memory;
     heap(start);
-    let room = Cuboid { min: Vec3::ZERO, max: Vec3::new(1.72, 3.0, 1.72) };
     let materials =
         [ContactMaterial { elasticity: Some(0.8), friction: Some(Friction { static_: 0.5, kinetic: 0.4 }) }];
     for (names, response) in &RESPONSES {
@@ -56,7 +59,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
             let scene = Scene {
                 start,
                 forces,
-                colliders: &room,
+                colliders: &ROOM,
                 materials: &materials,
                 constraints: &response.contacts(),
                 substeps: response.substeps(),
@@ -70,6 +73,35 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
             }
             out(name, system.hash());
         }
+    }
+    in_air(start, system, &materials, out);
+}
+
+/// The same with drag and wind over a floor alone, where a host takes many side by side, and in the room, where they meet.
+fn in_air(
+    start: &mut [Particle],
+    system: &mut System<Inline<PARTICLES, 0, 0, COLUMNS>>,
+    materials: &[ContactMaterial; 1],
+    out: &mut dyn FnMut(&str, u64),
+) {
+    start.iter_mut().for_each(|ball| ball.drag = 2.5 * ball.mass * ball.radius);
+    let wind = Wind { field: Uniform { velocity: Vec3::new(0.5, 0.0, -0.25) }, coefficient: Some(0.5) };
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let drag: &dyn Force = &(Gravity::EARTH, Drag {});
+    let gale: &dyn Force = &(wind, Gravity::EARTH, QuadraticDrag { coefficient: 0.125 });
+    let airs: [(&str, &dyn Force, &dyn Collider, Meetings); 4] = [
+        ("drag", drag, &floor, Meetings::Through),
+        ("drag_meetings", drag, &ROOM, Meetings::IMPULSE),
+        ("wind", gale, &floor, Meetings::Through),
+        ("wind_meetings", gale, &ROOM, Meetings::IMPULSE),
+    ];
+    for (name, forces, colliders, meetings) in airs {
+        let scene = Scene { start, forces, colliders, materials, meetings, ..Scene::EMPTY };
+        system.start(&scene, 1).expect("there is memory for it");
+        for frame in 1..=30 {
+            system.step(&scene, Time::frame(frame, 60) - system.time());
+        }
+        out(name, system.hash());
     }
 }
 

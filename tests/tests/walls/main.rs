@@ -3,6 +3,7 @@
 mod balls;
 mod blocks;
 mod bounces;
+mod braked;
 mod elastic;
 mod heights;
 mod lying;

@@ -1,6 +1,7 @@
 //! Rows past one flat face: who may touch it is told many at a time, and those who do go past it in packets.
 
 use super::{TileSweep, Waiting, each_by_itself, lone_face, words};
+use crate::collide::air::Air;
 use crate::collide::near::{BLOCK, Near};
 use crate::collide::tile::Tile;
 use crate::collide::waiting::ones;
@@ -70,7 +71,8 @@ impl<'s, 'a> TileSweep<'s, 'a> {
     /// Rows past a face and nothing else, of which those from the first on have leapt last, with nobody looking on.
     fn past_face(tile: &'s mut Tile<'a>, past: Past<'s>, first: usize, face: &Face, report: &'s mut Report) -> Self {
         let has_materials = tile.obstacles.materials.count() > 0;
-        Self { tile, past, first, has_materials, facing: Facing::Face(*face), are_points: true, report, observer: None }
+        let (facing, air) = (Facing::Face(*face), Air::around(&tile.obstacles));
+        Self { tile, past, first, has_materials, facing, air, are_points: true, report, observer: None }
     }
 }
 

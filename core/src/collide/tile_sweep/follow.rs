@@ -47,7 +47,7 @@ impl TileSweep<'_, '_> {
         walls: &'s dyn Collider,
         sinks: Option<&'s dyn Collider>,
     ) -> Sweep<'s> {
-        let Self { tile, report, observer, .. } = self;
+        let Self { tile, air, report, observer, .. } = self;
         let observer: Option<&mut dyn Observer> = match observer {
             Some(observer) => Some(&mut **observer),
             None => None,
@@ -65,6 +65,7 @@ impl TileSweep<'_, '_> {
             elasticity: m.elasticity[row],
             material: lives.material[row].checked_sub(1),
             left: None,
+            air: air.map(|air| air.braking(m, row)),
             dt: dt.seconds(),
             report,
             observer,

@@ -1,7 +1,7 @@
 //! Rows that go past a flat face side by side, and where they are put.
 
 use super::TileSweep;
-use crate::collide::packet::{CLOSE, Outcome, Paths, Riders};
+use crate::collide::packet::{Airs, CLOSE, Medium, Outcome, Paths, Riders};
 use crate::collide::tile::Tile;
 use crate::collide::waiting::{Packet, Queue, Start, Waited, ones, side_by_side};
 use crate::lanes::{BroadKernel, Eight, LANES, Lanes, PARTS, Vectors, not, run_broad};
@@ -39,6 +39,15 @@ pub(super) struct Terms {
     /// True if all are finite, and end where their velocities take them.
     have_leapt: bool,
     swing: bool,
+    air: Weather,
+}
+
+/// The forces that a hit changes, as [`Medium`] has them.
+#[derive(Clone, Copy)]
+enum Weather {
+    Thin,
+    Steady(Vec3),
+    Any,
 }
 
 /// The rows of a packet that are to be followed alone, and those that neither are nor have come to the end of the step: a bit each.
@@ -182,7 +191,12 @@ impl TileSweep<'_, '_> {
         let Tile { reached, dt, .. } = *self.tile;
         let time = dt.seconds();
         let are_close = reached.is_some_and(|to| to.place + 100.0 * to.speed * time <= CLOSE);
-        Terms { time, are_close, have_leapt: reached.is_some(), swing: self.tile.obstacles.lead.is_some() }
+        let air = match self.air.map(|air| air.steady) {
+            None => Weather::Thin,
+            Some(Some(steady)) => Weather::Steady(steady.acceleration.unwrap_or(Vec3::ZERO)),
+            Some(None) => Weather::Any,
+        };
+        Terms { time, are_close, have_leapt: reached.is_some(), swing: self.tile.obstacles.lead.is_some(), air }
     }
 
     /// Rows side by side, none of which is before the `first`, nor the tile's last; of some it is known where they started. Of those who may
@@ -208,11 +222,41 @@ impl TileSweep<'_, '_> {
         let [a, b, c, d, e, f, g, h, i, j, k, l, are_free, radius, elasticity, at_rest, kinetic] = read;
         let [x0, v0, x1, v1] = [Vectors([a, b, c]), Vectors([d, e, f]), Vectors([g, h, i]), Vectors([j, k, l])];
         let Terms { are_close, swing, time, .. } = terms;
-        let riders = Riders { are_free, are_close, swing, radius, elasticity, at_rest, kinetic };
+        let air = match terms.air {
+            Weather::Steady(gravity) if !LIES => Medium::Steady(self.airs(like, packet, first, gravity)),
+            Weather::Any if !LIES => Medium::Any,
+            _ => Medium::Thin,
+        };
+        let riders = Riders { are_free, are_close, swing, radius, elasticity, air, at_rest, kinetic };
         (riders, Paths { x0, v0, x1, v1, time: like.all(time) })
     }
 
-    /// The same of eight: places and velocities at both ends, and properties in the order of [`Riders`].
+    /// How these fall and are braked.
+    #[inline(always)]
+    fn airs<F: Lanes>(&self, like: F, packet: &Packet<'_>, first: usize, gravity: Vec3) -> Airs<F> {
+        let m = &self.tile.attributes;
+        let (columns, last) = ([m.lives.mass, m.lives.drag, m.inverse_mass], self.tile.position.len() - 1 - first);
+        let common = m.common.inertia();
+        let [mass, drag, inverse_mass] = like.of_parts(
+            #[inline(always)]
+            |like, nth| match common {
+                Some([mass, drag, inverse_mass]) => [like.all(mass), like.all(drag), like.all(inverse_mass)],
+                None => {
+                    let at = places_from(first, packet.rows[nth]);
+                    columns.map(
+                        #[inline(always)]
+                        |column| {
+                            let column = &column[first..][..last];
+                            like.of(at.map(|row| column[row]))
+                        },
+                    )
+                }
+            },
+        );
+        Airs { gravity: Vectors::splat(like, gravity), mass, drag, inverse_mass }
+    }
+
+    /// Rows side by side as above, but eight: places and velocities at both ends, and properties in the order of [`Riders`].
     #[inline(always)]
     fn read<F: Eight, const LIES: bool, const POINTS: bool>(
         &self,
@@ -291,11 +335,12 @@ fn put(position: &mut [Vec3], velocity: &mut [Vec3], row: usize, [[x, y, z, _], 
 
 #[cfg(test)]
 mod tests {
+    use crate::force::{QuadraticDrag, Uniform, Wind};
     use crate::lanes::NARROW;
     use crate::observe::Observer;
     use crate::rng::Stream;
     use crate::shape::{Cuboid, Mesh, Plane, Scenery, Shape, Sphere, Surface};
-    use crate::{Gravity, Heap, Particle, Scene, Symplectic, System, Time};
+    use crate::{Drag, Force, Gravity, Heap, Particle, Rk4, Scene, Symplectic, System, Time};
     use alloc::vec::Vec;
     use glam::Vec3;
 
@@ -310,7 +355,8 @@ mod tests {
             let ([x, y], [z, u], [v, w]) =
                 (Stream::new(5, 0, i).units(0), Stream::new(5, 0, i).units(1), Stream::new(5, 0, i).units(2));
             let position = Vec3::new(2.0 * x - 1.0, 0.2 * y, 2.0 * z - 1.0);
-            Particle { position, velocity: Vec3::new(u, v, w) * 4.0 - 2.0, elasticity: 0.8 * w, ..Particle::REST }
+            let velocity = Vec3::new(u, v, w) * 4.0 - 2.0;
+            Particle { position, velocity, mass: 0.5 + u, drag: 3.0 * v, elasticity: 0.8 * w, ..Particle::REST }
         };
         (0..count).map(thrown).collect()
     }
@@ -336,9 +382,13 @@ mod tests {
         };
         let all = [ground.clone()].into_iter().chain((0..5).map(things));
         let among = Scenery::new(all.map(|thing| (thing.clone(), thing.bounds())).collect());
-        for count in [1, 7, 8, 9, 12, 15, 16, 17, 23, 25, 40, 200] {
+        let (g, wind) = (Gravity::EARTH, Wind { field: Uniform { velocity: Vec3::X }, coefficient: None });
+        let forces: [&dyn Force; 4] =
+            [&g, &(g, Drag {}), &(wind, g), &(g, Drag {}, QuadraticDrag { coefficient: 0.2 })];
+        for (i, count) in [1, 7, 8, 9, 12, 15, 16, 17, 23, 25, 40, 200].into_iter().enumerate() {
             let start = thrown(count);
-            let parts = Scene { start: &start, forces: &Gravity::EARTH, integrator: &Symplectic, ..Scene::EMPTY };
+            let parts = Scene { start: &start, forces: forces[i % 4], integrator: &Symplectic, ..Scene::EMPTY };
+            let parts = if i / 4 == 1 { Scene { integrator: &Rk4, ..parts } } else { parts };
             for (nth, scene) in
                 [Scene { colliders: &ground, ..parts }, Scene { colliders: &among, ..parts }].iter().enumerate()
             {
