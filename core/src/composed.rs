@@ -1,24 +1,40 @@
 //! Traits that are closed under composition: slices, arrays, lists and tuples of X are X.
 
-/// Makes lists and tuples of a trait's kinds kinds of it. `$parts!(this => parts)` has to expand to the trait's functions for a `self`
-/// that is made of `parts`, over which `for` goes.
+/// Does something with each part: of a list one after the other, of a tuple each by its own type, so that nothing is asked through a table and
+/// parts cost nothing that leave a function as it is.
+macro_rules! each {
+    ($all:expr, [], $part:ident => $do:block) => {
+        for $part in $all $do
+    };
+    ($all:expr, [$($name:ident)+], $part:ident => $do:block) => {
+        #[allow(non_snake_case)]
+        let ($($name,)+) = $all;
+        $({
+            let $part = $name;
+            $do
+        })+
+    };
+}
+
+/// Makes lists and tuples of a trait's kinds kinds of it. `$parts!(parts)` has to expand to the trait's functions for a `self` that is made
+/// of what `each!(self, parts, part => { .. })` goes over.
 macro_rules! composed {
     ($kind:ident by $parts:ident) => {
         impl<T: $kind> $kind for [T] {
-            $parts!(this => this);
+            $parts!([]);
         }
 
         impl<T: $kind, const N: usize> $kind for [T; N] {
-            $parts!(this => this);
+            $parts!([]);
         }
 
         impl<T: $kind, const N: usize> $kind for heapless::Vec<T, N> {
-            $parts!(this => this);
+            $parts!([]);
         }
 
         #[cfg(feature = "alloc")]
         impl<T: $kind> $kind for alloc::vec::Vec<T> {
-            $parts!(this => this);
+            $parts!([]);
         }
 
         composed!($kind by $parts, A);
@@ -30,13 +46,9 @@ macro_rules! composed {
     };
     ($kind:ident by $parts:ident, $($name:ident)+) => {
         impl<$($name: $kind),+> $kind for ($($name,)+) {
-            $parts!(this => {
-                #[allow(non_snake_case)]
-                let ($($name,)+) = this;
-                [$($name as &dyn $kind),+]
-            });
+            $parts!([$($name)+]);
         }
     };
 }
 
-pub(crate) use composed;
+pub(crate) use {composed, each};

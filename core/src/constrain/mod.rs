@@ -53,7 +53,7 @@ pub use crate::cloth::Hinge;
 pub use crate::cloth::mesh_hinges;
 pub use crate::memory::{Demand, Kept, Words};
 
-use crate::composed::composed;
+use crate::composed::{composed, each};
 use crate::observe::Phase;
 
 /// Something that the places and velocities of particles have to satisfy.
@@ -209,48 +209,45 @@ impl<T: Constraint + ?Sized> Constraint for &T {
 
 /// The methods of a constraint that has parts: it does what they do, each in its own share of the memory.
 macro_rules! all_of {
-    ($this:ident => $parts:expr) => {
+    ($parts:tt) => {
         fn demand(&self) -> Demand {
-            let $this = self;
             let mut sum = Demand::NONE;
-            for part in $parts {
+            each!(self, $parts, part => {
                 sum = sum.and(part.demand());
-            }
+            });
             sum
         }
         fn is_empty(&self) -> bool {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 if !part.is_empty() {
                     return false;
                 }
-            }
+            });
             true
         }
         fn bind(&self, bodies: &mut Bodies<'_>) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.bind(bodies);
-            }
+            });
         }
-        all_of!(@phase prepare, $this => $parts);
-        all_of!(@phase begin, $this => $parts);
-        all_of!(@phase project, $this => $parts);
-        all_of!(@phase settle, $this => $parts);
+        all_of!(@phase prepare, $parts);
+        all_of!(@phase begin, $parts);
+        all_of!(@phase project, $parts);
+        all_of!(@phase settle, $parts);
     };
-    (@phase $phase:ident, $this:ident => $parts:expr) => {
+    (@phase $phase:ident, $parts:tt) => {
         fn $phase(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-            let $this = self;
             let mut shares = share.parts();
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.$phase(bodies, &mut shares.next(part.demand()));
-            }
+            });
         }
     };
 }
 
+#[allow(for_loops_over_fallibles, reason = "an option is a list of one or of none")]
 impl<T: Constraint> Constraint for Option<T> {
-    all_of!(this => this.as_slice());
+    all_of!([]);
 }
 
 composed!(Constraint by all_of);

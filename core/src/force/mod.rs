@@ -65,7 +65,7 @@ pub use viscosity::Viscosity;
 pub use watched::Watched;
 pub use wind::Wind;
 
-use crate::composed::composed;
+use crate::composed::{composed, each};
 use crate::custom::CustomColumnsMut;
 use core::ops::Range;
 use glam::Vec3;
@@ -224,82 +224,76 @@ impl Force for () {
 
 /// The methods of a force that has parts and is their sum.
 macro_rules! sum_of {
-    ($this:ident => $parts:expr) => {
+    ($parts:tt) => {
         fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.add_to(state, rows.clone(), total);
-            }
+            });
         }
         fn write(&self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>, dt: f32) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.write(state, custom, dt);
-            }
+            });
         }
         fn tell(&self, watched: &mut Watched<'_>) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.tell(watched);
-            }
+            });
         }
         fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.add_jacobian(state, change, total);
-            }
+            });
         }
         fn add_stiffness(&self, state: &State<'_>, weights: [f32; 2], total: &mut [Vec3]) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.add_stiffness(state, weights, total);
-            }
+            });
         }
         fn needs(&self) -> Needs {
-            let $this = self;
             let mut needs = Needs::default();
-            for part in $parts {
+            each!(self, $parts, part => {
                 needs = needs.and(part.needs());
-            }
+            });
             needs
         }
         fn is_local(&self) -> bool {
-            let $this = self;
-            $parts.into_iter().all(|part| part.is_local())
+            each!(self, $parts, part => {
+                if !part.is_local() {
+                    return false;
+                }
+            });
+            true
         }
         #[cfg(not(target_os = "none"))]
         fn steady(&self) -> Option<Steady> {
-            let $this = self;
             let mut all = Steady::default();
-            for part in $parts {
+            each!(self, $parts, part => {
                 all = all.and(part.steady()?)?;
-            }
+            });
             Some(all)
         }
         #[cfg(feature = "std")]
         fn energy(&self, state: &State<'_>) -> f64 {
-            let $this = self;
             let mut sum = 0.0;
-            for part in $parts {
+            each!(self, $parts, part => {
                 sum += part.energy(state);
-            }
+            });
             sum
         }
         #[cfg(feature = "std")]
         fn power(&self, state: &State<'_>) -> f64 {
-            let $this = self;
             let mut sum = 0.0;
-            for part in $parts {
+            each!(self, $parts, part => {
                 sum += part.power(state);
-            }
+            });
             sum
         }
         #[cfg(feature = "std")]
         fn account(&self, state: &State<'_>, visit: &mut dyn FnMut(Entry)) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.account(state, visit);
-            }
+            });
         }
     };
 }

@@ -15,7 +15,7 @@ pub use chance::Chance;
 pub use dense::Dense;
 pub use kind::ReaperKind;
 
-use crate::composed::composed;
+use crate::composed::{composed, each};
 use crate::force::State;
 use crate::index::{Neighbours, StateIndex};
 use crate::math::max;
@@ -163,24 +163,26 @@ impl Reaper for () {
 
 /// The methods of a reaper that has parts: it takes whomever one of them takes.
 macro_rules! any_of {
-    ($this:ident => $parts:expr) => {
+    ($parts:tt) => {
         fn judge(&self, state: &State<'_>, rows: Range<usize>, verdicts: &mut Verdicts<'_>) {
-            let $this = self;
-            for part in $parts {
+            each!(self, $parts, part => {
                 part.judge(state, rows.clone(), verdicts);
-            }
+            });
         }
         fn reach(&self) -> f32 {
-            let $this = self;
             let mut most = 0.0;
-            for part in $parts {
+            each!(self, $parts, part => {
                 most = max(part.reach(), most);
-            }
+            });
             most
         }
         fn is_empty(&self) -> bool {
-            let $this = self;
-            $parts.into_iter().all(|part| part.is_empty())
+            each!(self, $parts, part => {
+                if !part.is_empty() {
+                    return false;
+                }
+            });
+            true
         }
     };
 }
