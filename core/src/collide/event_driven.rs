@@ -300,16 +300,7 @@ impl EventDriven<'_> {
         let acceleration = paths.map(|path| path.acceleration());
         let slack = self.slack(row, other);
         let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };
-        let [dt, rest] = [self.dt, self.end - now].map(Time::seconds);
-        let mut answer = touch.answer(dt, rest);
-        if let Some(air) = self.air {
-            let onward = |i: usize| Onward { place: paths[i].x0, now, rest, velocity: answer.velocity[i] };
-            let braked =
-                |i: usize| air.braking(self.attributes, rows[i]).acceleration(&paths[i], acceleration[i], &onward(i));
-            let acceleration = [0, 1].map(|i| if waits[i] { acceleration[i] } else { braked(i) });
-            answer = Touch { acceleration, ..touch }.answer(dt, rest);
-        }
-        let Answer { velocity: after, way, ends, slid } = answer;
+        let Answer { velocity: after, way, ends, slid } = self.answer(rows, waits, &paths, &touch, now);
         if let Some(slid) = &slid {
             self.observer.slid(slid);
         }
@@ -350,6 +341,19 @@ impl EventDriven<'_> {
                 self.wait(row);
             }
         }
+    }
+
+    /// What a touch leaves two of, from when they touch to the step's end, in which those are braked as fast as they are then that do not wait.
+    fn answer(&self, rows: [usize; 2], waits: [bool; 2], paths: &[Path; 2], touch: &Touch, now: Time) -> Answer {
+        let [dt, rest] = [self.dt, self.end - now].map(Time::seconds);
+        let first = touch.answer(dt, rest);
+        let Some(air) = self.air else { return first };
+        let braked = |i: usize| {
+            let onward = Onward { place: paths[i].x0, now, rest, velocity: first.velocity[i] };
+            air.braking(self.attributes, rows[i]).acceleration(&paths[i], touch.acceleration[i], &onward)
+        };
+        let acceleration = [0, 1].map(|i| if waits[i] { touch.acceleration[i] } else { braked(i) });
+        Touch { acceleration, ..*touch }.answer(dt, rest)
     }
 
     /// Moves two that overlap apart, each by its share or one for both, where no wall is in the way: what walls have set

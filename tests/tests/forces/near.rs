@@ -211,9 +211,10 @@ fn lists_made_in_threads_are_the_same() {
     let pools =
         [1, 2, 3, 8].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads"));
     let [one, two, three, eight] = pools.each_ref();
-    let (mut listed, mut cases) = (vec![], 0);
+    let mut listed = vec![];
+    let every = if cfg!(debug_assertions) { 3 } else { 1 };
     let both = starts.iter().map(|start| (start, &SOFT)).chain([(&starts[0], &LONG), (&starts[2], &LONG)]);
-    for (start, force) in both.filter(|_| is_run(&mut cases)) {
+    for (start, force) in both.step_by(every) {
         let scene = Scene { start, forces: force, index: &Structure::Grid, ..Scene::EMPTY };
         // Some steps with so much memory, each in a pool, in turns.
         let run = |more: usize, steps: usize, pools: &[&rayon::ThreadPool]| {

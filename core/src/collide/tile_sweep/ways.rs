@@ -27,7 +27,8 @@ pub(super) struct Ways<F> {
 
 /// Boxes that rows do not leave in the step where they meet nothing, nor, if they may touch the face, by lying on it and bouncing off it:
 /// along it they get no farther than their paths do and by what their velocities change, but for what friction holds them back; away from it
-/// no farther than they could have got toward it. All that they may lean on is in them as well, half the change of velocity away in that time.
+/// no farther than they could have got toward it and by twice what their velocities change: where they are braked, these lie between what hits
+/// leave and where the air would have them. All that they may lean on is in them as well, half the change of velocity away in that time.
 /// Velocities change by no number larger than `change`, by an Euler method.
 #[inline(always)]
 pub(super) fn straight_ways<F: Lanes>(
@@ -49,7 +50,7 @@ pub(super) fn straight_ways<F: Lanes>(
         room: of.radii(like, packet) + all(rounding + time * (1.0 / 3.0) * change) + all(0.5) * bend,
     };
     let strays = all(5.0) * bend;
-    let across = |normal: Vectors<F>| way.dot(normal).abs() + bend;
+    let across = |normal: Vectors<F>| way.dot(normal).abs() + all(2.0) * bend;
     hull.ways(face, strays, across, way.length() + strays)
 }
 
