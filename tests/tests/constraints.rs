@@ -4,7 +4,7 @@ use pointmass::shape::Plane;
 use pointmass::{
     Contacts, Distance, Drag, Event, EventKind, Events, Gravity, Ledger, Measures, Method, Particle, Scene, Time, Vec3,
 };
-use pointmass_tests::{Random, gap, often, run, started};
+use pointmass_tests::{Random, gap, is_run, often, run, started};
 
 const G: f64 = 9.81;
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
@@ -61,6 +61,7 @@ fn a_pendulum_on_a_rod_swings_in_its_time() {
 fn a_chain_hangs_longer_by_what_its_links_give_way() {
     let links = 8u32;
     let (mass, length) = (0.05f32, 0.1f32);
+    let mut cases = 0;
     let start: Vec<Particle> = (0..=links)
         .map(|i| Particle {
             position: Vec3::NEG_Y * (i as f32 * length),
@@ -75,6 +76,9 @@ fn a_chain_hangs_longer_by_what_its_links_give_way() {
             let chain: Vec<_> =
                 (0..links).map(|i| Distance { ends: [i, i + 1], length, compliance, damping, tether }).collect();
             for method in [Method::Symplectic, Method::Rk4, Method::Verlet, Method::Implicit] {
+                if !is_run(&mut cases) {
+                    continue;
+                }
                 let forces = (DOWN, Drag {});
                 let (constraints, integrator) = (&chain, &method);
                 let scene = Scene { start: &start, forces: &forces, constraints, substeps, integrator, ..Scene::EMPTY };

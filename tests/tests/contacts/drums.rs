@@ -92,7 +92,7 @@ fn drums_keep_their_balls() {
         // Rounding takes more of a room that is nearly flat, whose faces are turned from single precision.
         let bound = if solid.name.starts_with("flattened") { 5e-5 } else { 2e-6 };
         for (name, motion) in motions(solid.middle, extent(&solid)) {
-            for _ in 0..often(40) {
+            for _ in 0..often(20) {
                 let (share, how) = farthest_out(&solid, &motion, &mut random);
                 if !(share < bound) {
                     failures.push(format!("{} {name}: {how}: {share:e}", solid.name));
