@@ -31,7 +31,7 @@ pub const fn often(n: usize) -> usize {
     if cfg!(debug_assertions) { n.div_ceil(10) } else { n }
 }
 
-/// Tells whether to run the next case of many: each of them, in debug builds every sixth, and in each six of an innermost loop another one.
+/// Tells whether to run the next case of many: each of them, in debug builds every sixth, each time another one of an innermost loop of as many.
 #[must_use]
 pub const fn is_run(cases: &mut usize) -> bool {
     let case = *cases;

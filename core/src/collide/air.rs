@@ -7,11 +7,14 @@
 use super::path::Path;
 use super::tile::Obstacles;
 use crate::force::{Attributes, Force, State, Steady};
-use crate::math::{along, dot, is_zero, max, minus, plus, scaled};
+use crate::math::{along, dot, is_zero, length, max, minus, over, plus, scaled};
 use crate::rows::BLOCKS;
 use crate::time::Time;
 use core::slice::from_ref;
 use glam::Vec3;
+
+/// The share of a bound on speeds that rounding may add.
+pub(super) const ROUNDING: f32 = 1.000_1;
 
 /// The forces of a scene, which may depend on velocities, and on nothing of other particles.
 #[derive(Clone, Copy)]
@@ -29,20 +32,32 @@ pub(super) struct Braked<'a> {
     row: usize,
 }
 
-/// Where and when a path goes on, for how long \[s\], and how fast.
-pub(super) struct Onward {
+/// Where and when a path goes on, and for how long \[s\]; the mean velocity and acceleration that it has had up to then.
+#[derive(Clone, Copy)]
+pub(super) struct Until {
     pub(super) place: Vec3,
     pub(super) now: Time,
     pub(super) rest: f32,
     pub(super) velocity: Vec3,
+    pub(super) acceleration: Vec3,
+}
+
+/// Accelerations of a path that goes on with another velocity: that with which it begins, and its mean in the rest of the step.
+#[derive(Clone, Copy)]
+pub(super) struct Onward {
+    pub(super) first: Vec3,
+    pub(super) mean: Vec3,
 }
 
 impl<'a> Air<'a> {
     /// The air that these are in, if there is any.
     pub(super) fn around(obstacles: &Obstacles<'a>) -> Option<Self> {
-        let forces = obstacles.forces;
+        let Obstacles { forces, materials, .. } = *obstacles;
         let steady = if BLOCKS { forces.steady() } else { None };
         let may_brake = steady.is_none_or(|steady| steady.drags);
+        // What floats has one term more.
+        let floats = || materials.code().is_some_and(|code| (code.floats)(materials));
+        let steady = steady.filter(|_| !floats());
         (may_brake && forces.is_local()).then_some(Self { forces, steady })
     }
 
@@ -52,17 +67,37 @@ impl<'a> Air<'a> {
     }
 }
 
+impl Until {
+    /// The rest of a path from a place, at an instant of it, whose mean acceleration so far this is.
+    pub(super) fn on(path: &Path, place: Vec3, now: Time, acceleration: Vec3) -> Self {
+        let rest = (path.during[1] - now).seconds();
+        Self { place, now, rest, velocity: path.mean_velocity(), acceleration }
+    }
+
+    /// The accelerations, if nothing brakes.
+    pub(super) fn unchanged(&self) -> Onward {
+        Onward { first: self.acceleration, mean: self.acceleration }
+    }
+}
+
+impl Onward {
+    /// The mean of what a surface of this normal keeps from moving across it.
+    pub(super) fn held(&self, normal: Vec3) -> Vec3 {
+        let more = minus(self.first, self.mean);
+        if is_zero(more) { self.mean } else { along(self.mean, normal, dot(more, normal)) }
+    }
+}
+
 impl Braked<'_> {
-    /// The mean acceleration in the rest of a step, for which the mean up to then is known, of a path that goes on with another velocity
-    /// than its own.
+    /// The accelerations with which a path goes on with this velocity.
     ///
-    /// For forces that are linear in the velocity it leaves the velocity that 1 + z + z²/2 + z³/6 in place of the exponential of z, the rest times
-    /// the rate at which they brake, would leave: it comes to that at which they hold each other the balance, however strong they are, and never
-    /// passes it.
+    /// Forces that change by −z times what velocities change by in the rest leave of that what 1 / (1 + z + z²/2 + z³/6), in place of
+    /// the exponential of −z, leaves: however strong they are, it comes to the velocity at which they hold each other the balance, and not beyond that.
+    /// Where they would make it faster than both velocities and the acceleration so far account for, that is kept.
     #[inline(never)]
-    pub(super) fn acceleration(&self, path: &Path, mean: Vec3, onward: &Onward) -> Vec3 {
+    pub(super) fn onward(&self, until: &Until, velocity: Vec3) -> Onward {
         let Self { forces, attributes, row } = *self;
-        let Onward { place, now: time, rest, velocity } = *onward;
+        let Until { place, now: time, rest, velocity: past, acceleration } = *until;
         let inverse_mass = attributes.inverse_mass[row];
         let mut state = attributes.lives.attributes_of(row..row + 1);
         state.time = time;
@@ -72,22 +107,16 @@ impl Braked<'_> {
             forces.add_to(&state, 0..1, &mut total);
             scaled(total[0], inverse_mass)
         };
-        let before = alone(path.mean_velocity());
-        let jump = minus(alone(velocity), before);
-        let first = plus(mean, jump);
-        let square = dot(first, first);
+        let (jump, change) = (minus(alone(velocity), alone(past)), minus(velocity, past));
         if is_zero(jump) {
-            return mean;
+            return until.unchanged();
         }
-        let again = plus(mean, minus(alone(along(velocity, first, 0.5 * rest)), before));
-        let change = minus(again, first);
-        let solved = along(first, change, damping(max(-2.0 * dot(change, first) / square, 0.0)));
-        // Where a force is beyond an f32 nothing is known of it.
-        if solved.is_finite() { solved } else { mean }
+        let first = plus(acceleration, jump);
+        let z = max(-dot(jump, change) / dot(change, change), 0.0) * rest;
+        let mean = over(first, 1.0 / (1.0 + z * (0.5 + z * (1.0 / 6.0))) + z);
+        let fastest = max(length(velocity), length(past)) + length(acceleration) * rest;
+        // Neither is a force that is beyond an f32.
+        let is_slow = length(along(velocity, mean, rest)) <= ROUNDING * fastest;
+        if is_slow && first.is_finite() { Onward { first, mean } } else { until.unchanged() }
     }
-}
-
-/// How much of the change that half a rest of `z` makes in an acceleration, to the first order in that, goes into its mean of the whole rest.
-fn damping(z: f32) -> f32 {
-    (1.0 + z * (2.0 / 3.0 + z * (1.0 / 3.0))) / (1.0 + z * (1.0 + z * (0.5 + z * (1.0 / 6.0))))
 }

@@ -1,6 +1,6 @@
 //! The step of particles that meet, worked through in the order of time.
 
-use super::air::{Air, Onward};
+use super::air::{Air, Until};
 use super::images::first_touch_of_images;
 use super::meeting::{Answer, Touch};
 use super::path::{Path, between};
@@ -291,16 +291,17 @@ impl EventDriven<'_> {
         let offset = paths[0].x0 - paths[1].x0 - image;
         let normal = Touch::along(offset, velocity);
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
+        let acceleration = paths.map(|path| path.acceleration());
+        let so_far = [0, 1].map(|i| Until::on(&paths[i], paths[i].x0, now, acceleration[i]));
         let overlap = self.radius[row] + self.radius[other] - length(offset);
         if overlap > self.slack(row, other) {
             self.set_apart(rows, waits, &mut paths, normal * overlap);
         }
         let material = rows.map(|row| self.material[row].checked_sub(1));
         let mixed = of_two(self.obstacles.materials, rows.map(|row| self.elasticity[row]), material);
-        let acceleration = paths.map(|path| path.acceleration());
         let slack = self.slack(row, other);
         let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };
-        let Answer { velocity: after, way, ends, slid } = self.answer(rows, waits, &paths, &touch, now);
+        let Answer { velocity: after, way, ends, slid } = self.answer(rows, waits, &so_far, &touch);
         if let Some(slid) = &slid {
             self.observer.slid(slid);
         }
@@ -344,16 +345,26 @@ impl EventDriven<'_> {
     }
 
     /// What a touch leaves two of, from when they touch to the step's end, in which those are braked as fast as they are then that do not wait.
-    fn answer(&self, rows: [usize; 2], waits: [bool; 2], paths: &[Path; 2], touch: &Touch, now: Time) -> Answer {
-        let [dt, rest] = [self.dt, self.end - now].map(Time::seconds);
-        let first = touch.answer(dt, rest);
-        let Some(air) = self.air else { return first };
-        let braked = |i: usize| {
-            let onward = Onward { place: paths[i].x0, now, rest, velocity: first.velocity[i] };
-            air.braking(self.attributes, rows[i]).acceleration(&paths[i], touch.acceleration[i], &onward)
-        };
-        let acceleration = [0, 1].map(|i| if waits[i] { touch.acceleration[i] } else { braked(i) });
-        Touch { acceleration, ..*touch }.answer(dt, rest)
+    fn answer(&self, rows: [usize; 2], waits: [bool; 2], until: &[Until; 2], touch: &Touch) -> Answer {
+        let (dt, rest) = (self.dt.seconds(), until[0].rest);
+        let mut answer = touch.answer(dt, rest);
+        let Some(air) = self.air else { return answer };
+        // Whether they stay in touch may change with that.
+        for _ in 0..2 {
+            let stays = answer.slid.is_some();
+            let acceleration = [0, 1].map(|i| {
+                if waits[i] {
+                    return touch.acceleration[i];
+                }
+                let onward = air.braking(self.attributes, rows[i]).onward(&until[i], answer.velocity[i]);
+                if stays { onward.held(touch.normal) } else { onward.mean }
+            });
+            answer = Touch { acceleration, ..*touch }.answer(dt, rest);
+            if answer.slid.is_some() == stays {
+                break;
+            }
+        }
+        answer
     }
 
     /// Moves two that overlap apart, each by its share or one for both, where no wall is in the way: what walls have set

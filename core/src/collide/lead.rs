@@ -1,6 +1,6 @@
 //! Springs ask of a hit that it leave their method alone along the surface.
 //!
-//! After a hit a particle goes on along a parabola with the mean acceleration of its path. Under steady forces that is the motion. Of what
+//! After a hit a particle goes on along a parabola with the mean acceleration of its path, but for what the air brakes otherwise then. Under steady forces that is the motion. Of what
 //! swings it is a method of its own, x' = x + h v + h² a / 2, v' = v + h a, whose determinant is 1 + (h ω)² / 2: whatever lies, slides or
 //! bounces on a surface would gain energy in each step, in the directions along that, which the surface has no part in. So where there
 //! are springs, a path keeps along the surface by how much its method led it beyond the parabola, and how fast it made it.

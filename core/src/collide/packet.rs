@@ -15,6 +15,7 @@ use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, negated, n
 use crate::shape::Face;
 use crate::time::Time;
 pub(super) use airs::Airs;
+use airs::Onwards;
 use glam::Vec3;
 use hits::{Hits, Meetings, Seats, Segments, Walls};
 use leads::Leads;
@@ -281,13 +282,16 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let incoming = before.dot(normal);
         let outgoing = incoming.simd_lt(zero).select(negated(incoming) * max(self.elasticity, zero), incoming);
         let came = before - normal * incoming;
-        let slip = Vectors::splat(like, Vec3::ZERO) + (came + self.answer(came, outgoing - incoming));
-        let acceleration = self.braked(paths, mean, slip + normal * outgoing, rest);
+        let (still, held) = (Vectors::splat(like, Vec3::ZERO), came + self.answer(came, zero - incoming));
+        let until = [(paths.v0 + paths.v1) * all(0.5) + cubics.excess / paths.time, mean];
+        let pressed = self.onward(until, still + held + normal * zero, rest);
         let (beside, is_free) = self.set_off(paths, cubics, meetings, walls, incoming);
-        let onward = slowed(outgoing, acceleration.dot(beside - place));
-        let pressing = negated(acceleration.dot(normal));
+        let onward = slowed(outgoing, mean.dot(beside - place));
+        let pressing = negated(pressed.first.dot(normal));
         let rests = pressing.simd_gt(zero)
             & (incoming.simd_ge(zero) | (all(2.0) * onward).simd_lt(all(RESTING * dt) * pressing));
+        let slip = still + (came + self.answer(came, outgoing - incoming));
+        let acceleration = self.onward(until, slip + normal * outgoing, rest).mean;
         let velocity = slip + normal * onward;
         let x1 = beside + (velocity + acceleration * (all(0.5) * rest)) * rest;
         let x1 = leads.map_or(x1, |leads| leads.beyond(x1));
@@ -295,18 +299,20 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         if !rests.any() {
             return (flying, is_free);
         }
-        let resting = self.rest(paths, meetings, leads, beside, [came, mean], [incoming, rest]);
+        let resting = self.rest(paths, meetings, leads, beside, [held, pressed.held(normal)], rest);
         (Paths::select(rests, resting, flying), is_free)
     }
 
-    /// The mean accelerations in the rests of a step with other velocities, for which those up to then are known.
+    /// How those go on with other velocities of which the mean velocities and accelerations so far are known.
     #[inline(always)]
-    fn braked(&self, paths: &Paths<F>, mean: Vectors<F>, velocity: Vectors<F>, rest: F) -> Vectors<F> {
-        let Medium::Steady(airs) = &self.air else { return mean };
-        airs.acceleration([mean, (paths.x1 - paths.x0) / paths.time], velocity, rest)
+    fn onward(&self, until: [Vectors<F>; 2], velocity: Vectors<F>, rest: F) -> Onwards<F> {
+        match &self.air {
+            Medium::Steady(airs) => airs.onward(until, velocity, rest),
+            _ => Onwards { first: until[1], mean: until[1] },
+        }
     }
 
-    /// The ways on of those who have come to rest, from beside a face that their velocities are `came` along.
+    /// The ways on of those who have come to rest, from beside a face that friction leaves them so fast along, with these accelerations.
     #[inline(always)]
     fn rest(
         &self,
@@ -314,13 +320,11 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         meetings: &Meetings<F>,
         leads: Option<Leads<F>>,
         beside: Vectors<F>,
-        [came, mean]: [Vectors<F>; 2],
-        [incoming, rest]: [F; 2],
+        [slip, acceleration]: [Vectors<F>; 2],
+        rest: F,
     ) -> Paths<F> {
         let Meetings { hits: Hits { time: s, normal, slack, .. }, place, .. } = *meetings;
         let (zero, still) = (s.all(0.0), Vectors::splat(s, Vec3::ZERO));
-        let slip = came + self.answer(came, zero - incoming);
-        let acceleration = self.braked(paths, mean, still + slip + normal * zero, rest);
         let pressing = max(negated(acceleration.dot(normal)), zero);
         let drive = acceleration + normal * pressing;
         let ([way, end], _) = self.slide(slip, drive, pressing, rest);

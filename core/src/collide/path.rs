@@ -175,10 +175,10 @@ impl Path {
         if duration > 0.0 { over(minus(self.v1, self.v0), duration) } else { Vec3::ZERO }
     }
 
-    /// Its mean velocity \[m/s\].
+    /// Its mean velocity \[m/s\], of which rounding of places is no part.
     pub(super) fn mean_velocity(&self) -> Vec3 {
-        let duration = self.duration();
-        if duration > 0.0 { over(minus(self.x1, self.x0), duration) } else { self.v0 }
+        let (duration, of_ends) = (self.duration(), scaled(plus(self.v0, self.v1), 0.5));
+        if duration > 0.0 { plus(of_ends, over(self.excess(), duration)) } else { of_ends }
     }
 
     /// The straight line between two fractions of its time, for a ball; `cubic` is it as a polynomial.

@@ -1,6 +1,6 @@
 //! The answer to a hit on a particle's way: it bounces, or comes to rest on the surface, along which it slides and with which it goes.
 
-use super::air::Onward;
+use super::air::{Onward, Until};
 use super::lead::Lead;
 use super::path::Path;
 use super::slide::Slide;
@@ -60,15 +60,15 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
             (came, slip, along(plus(surface, slip), normal, outgoing))
         };
-        let (_, _, bounced) = answered(surface, outgoing);
-        let acceleration = self.braked(path, mean, place, during, bounced);
+        let until = Until::on(path, place, during[0], mean);
+        let pressed = self.onward(&until, answered(surface, 0.0).2).first;
         let beside = self.set_off(path, meeting, place);
         // Whoever is set off from the surface has come there with the speed that is left so high.
-        let onward = slowed(outgoing, dot(acceleration, minus(beside, place)));
+        let onward = slowed(outgoing, dot(mean, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
         let ride = ride.as_ref();
         let goes = ride.map_or(surface, |ride| ride.velocity[0]);
-        let pressing = -dot(seen(acceleration, ride, aside(minus(before, goes), normal)), normal);
+        let pressing = -dot(seen(pressed, ride, aside(minus(before, goes), normal)), normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
@@ -87,23 +87,21 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let closing = if self.left.is_some() { max(-dot(minus(before, surface), normal), 0.0) } else { closing };
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
+        let going = self.onward(&until, after);
         if !rests {
-            let mut onward = Path::onward(beside, along(plus(surface, slip), normal, onward), acceleration, during);
+            let mut onward = Path::onward(beside, along(plus(surface, slip), normal, onward), going.mean, during);
             self.lead_on(&lead, &mut onward, None);
             return onward;
         }
-        let friction = mixed.friction;
-        let acceleration = self.braked(path, mean, place, during, after);
+        let (friction, acceleration) = (mixed.friction, going.held(normal));
         let landing = Landing { beside, during, surface, ride, incoming, came, slip, after, acceleration, friction };
         self.stay(path, meeting, &lead, landing)
     }
 
-    /// The mean acceleration in the rest of a step with another velocity, for which that up to then is known. What constraints have moved
-    /// is driven by its velocity, which goes on with what is left of it.
-    fn braked(&self, path: &Path, mean: Vec3, place: Vec3, [now, end]: [Time; 2], velocity: Vec3) -> Vec3 {
-        let rest = (end - now).seconds();
+    /// How it goes on with another velocity. What constraints have moved is driven by the velocity that they have left it.
+    fn onward(&self, until: &Until, velocity: Vec3) -> Onward {
         let air = self.air.filter(|_| self.left.is_none());
-        air.map_or(mean, |air| air.acceleration(path, mean, &Onward { place, now, rest, velocity }))
+        air.map_or(until.unchanged(), |air| air.onward(until, velocity))
     }
 
     /// Answers with a hit the velocity that constraints have left, if they have: tells what it was and is. That of the way, which comes in and goes out

@@ -306,8 +306,8 @@ pub(super) fn surroundings(path: &Path, [radius, elasticity]: [f32; 2], dt: f32,
     let hull = path.hull(radius);
     let size = max(max(largest(hull.min), largest(hull.max)), size);
     let speed = max(length(path.v0), length(path.v1));
-    // Newborns look ahead as far as they would go in a whole step.
-    let room = dt * (speed + 4.0 * length(path.v1 - path.v0)) + 128.0 * f32::EPSILON * size;
+    // Newborns look ahead as far as they would go in a whole step; in the middle of one a path may be faster than at its ends.
+    let room = dt * (speed + 4.0 * length(path.v1 - path.v0)) + length(path.x1 - path.x0) + 128.0 * f32::EPSILON * size;
     (0.0..=1.0).contains(&elasticity).then_some(Aabb { min: hull.min - room, max: hull.max + room })
 }
 

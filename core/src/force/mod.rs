@@ -112,8 +112,8 @@ pub trait Force: Sync {
 
     /// Tells whether the force on a particle depends on nothing but its own row and the time. By default it says no, which is always
     /// right; yes is for speed. A step then takes a few
-    /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it. After a hit it is asked once
-    /// more, for that row alone, so that what brakes a particle does so at its new velocity.
+    /// rows at a time through all its phases, while they are in the cache; the state has no other rows in it. After a hit it is asked
+    /// again, for that row alone, so that what brakes a particle does so at its new velocity; nobody counts that.
     fn is_local(&self) -> bool {
         false
     }

@@ -7,7 +7,7 @@ use pointmass::{
     Coulomb, Custom, Effort, Emit, Emitter, Force, Gravity, Heap, LennardJones, Measures, Method, Particle, PowerLaw,
     Pressure, Scene, Size, System, Time, Varied, Vec3, Viscosity,
 };
-use pointmass_tests::{f64s, gap, is_run, point, run, started};
+use pointmass_tests::{f64s, gap, point, run, started};
 
 const ATOMS: Radial<LennardJones> = Radial(LennardJones { epsilon: 1.0, sigma: 0.3, cutoff: 0.75 });
 const SOFT: Radial<PowerLaw> =

@@ -1,6 +1,7 @@
 //! Drag of particles side by side after hits, as `Air` has it.
 
-use crate::lanes::{Lanes, Vectors, max, not};
+use crate::collide::air::ROUNDING;
+use crate::lanes::{Lanes, Vectors, max, negated, not};
 
 /// What falls steadily, and is braked by linear drag.
 #[derive(Clone, Copy)]
@@ -12,6 +13,22 @@ pub(in crate::collide) struct Airs<F> {
     pub(in crate::collide) inverse_mass: F,
 }
 
+/// Accelerations of paths that go on with other velocities: those with which they begin, and their means in the rest of the step.
+#[derive(Clone, Copy)]
+pub(super) struct Onwards<F> {
+    pub(super) first: Vectors<F>,
+    pub(super) mean: Vectors<F>,
+}
+
+impl<F: Lanes> Onwards<F> {
+    /// The means of what surfaces of these normals keep from moving across them.
+    #[inline(always)]
+    pub(super) fn held(&self, normal: Vectors<F>) -> Vectors<F> {
+        let more = self.first - self.mean;
+        Vectors::select(more.is_zero(), self.mean, self.mean + normal * more.dot(normal))
+    }
+}
+
 impl<F: Lanes> Airs<F> {
     /// The sums of the forces over the masses.
     #[inline(always)]
@@ -20,26 +37,18 @@ impl<F: Lanes> Airs<F> {
         (pull - velocity * self.drag) * self.inverse_mass
     }
 
-    /// The mean accelerations in the rests of a step, for which those up to then are known, and with which velocities.
+    /// The accelerations with which paths go on with these velocities, of which the mean velocities and accelerations so far are known.
     #[inline(always)]
-    pub(super) fn acceleration(
-        &self,
-        [mean, mean_velocity]: [Vectors<F>; 2],
-        velocity: Vectors<F>,
-        rest: F,
-    ) -> Vectors<F> {
-        let all = |x| rest.all(x);
-        let before = self.alone(mean_velocity);
-        let jump = self.alone(velocity) - before;
-        let first = mean + jump;
-        let square = first.dot(first);
-        let again = mean + (self.alone(velocity + first * (all(0.5) * rest)) - before);
-        let change = again - first;
-        let z = max(all(-2.0) * change.dot(first) / square, all(0.0));
-        let more = all(1.0) + z * (all(2.0 / 3.0) + z * all(1.0 / 3.0));
-        let damping = more / (all(1.0) + z * (all(1.0) + z * (all(0.5) + z * all(1.0 / 6.0))));
-        let solved = first + change * damping;
-        let [x, y, z] = (solved * all(0.0)).0;
-        Vectors::select((x + y + z).simd_eq(all(0.0)) & not(jump.is_zero()), solved, mean)
+    pub(super) fn onward(&self, [past, acceleration]: [Vectors<F>; 2], velocity: Vectors<F>, rest: F) -> Onwards<F> {
+        let (all, zero) = (|x| rest.all(x), rest.all(0.0));
+        let (jump, change) = (self.alone(velocity) - self.alone(past), velocity - past);
+        let first = acceleration + jump;
+        let z = max(negated(jump.dot(change)) / change.dot(change), zero) * rest;
+        let mean = first / (all(1.0) / (all(1.0) + z * (all(0.5) + z * all(1.0 / 6.0))) + z);
+        let fastest = max(velocity.length(), past.length()) + acceleration.length() * rest;
+        let is_slow = (velocity + mean * rest).length().simd_le(all(ROUNDING) * fastest);
+        let [a, b, c] = (first * zero).0;
+        let are = not(jump.is_zero()) & is_slow & (a + b + c).simd_eq(zero);
+        Onwards { first: Vectors::select(are, first, acceleration), mean: Vectors::select(are, mean, acceleration) }
     }
 }
