@@ -32,13 +32,12 @@ pub(super) struct Braked<'a> {
     row: usize,
 }
 
-/// Where and when a path goes on, and for how long \[s\]; the mean velocity and acceleration that it has had up to then.
+/// Where and when a path goes on, and the mean acceleration that it has had up to then.
 #[derive(Clone, Copy)]
-pub(super) struct Until {
+pub(super) struct Until<'p> {
+    pub(super) path: &'p Path,
     pub(super) place: Vec3,
     pub(super) now: Time,
-    pub(super) rest: f32,
-    pub(super) velocity: Vec3,
     pub(super) acceleration: Vec3,
 }
 
@@ -67,13 +66,7 @@ impl<'a> Air<'a> {
     }
 }
 
-impl Until {
-    /// The rest of a path from a place, at an instant of it, whose mean acceleration so far this is.
-    pub(super) fn on(path: &Path, place: Vec3, now: Time, acceleration: Vec3) -> Self {
-        let rest = (path.during[1] - now).seconds();
-        Self { place, now, rest, velocity: path.mean_velocity(), acceleration }
-    }
-
+impl Until<'_> {
     /// The accelerations, if nothing brakes.
     pub(super) fn unchanged(&self) -> Onward {
         Onward { first: self.acceleration, mean: self.acceleration }
@@ -95,19 +88,17 @@ impl Braked<'_> {
     /// the exponential of −z, leaves: however strong they are, it comes to the velocity at which they hold each other the balance, and not beyond that.
     /// Where they would make it faster than both velocities and the acceleration so far account for, that is kept.
     #[inline(never)]
-    pub(super) fn onward(&self, until: &Until, velocity: Vec3) -> Onward {
+    pub(super) fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
         let Self { forces, attributes, row } = *self;
-        let Until { place, now: time, rest, velocity: past, acceleration } = *until;
+        let Until { path, place, now: time, acceleration } = *until;
+        let (rest, past) = ((path.during[1] - time).seconds(), path.mean_velocity());
         let inverse_mass = attributes.inverse_mass[row];
         let mut state = attributes.lives.attributes_of(row..row + 1);
-        state.time = time;
-        let alone = |velocity: Vec3| {
-            let mut total = [Vec3::ZERO];
-            let state = State { position: from_ref(&place), velocity: from_ref(&velocity), ..state };
-            forces.add_to(&state, 0..1, &mut total);
-            scaled(total[0], inverse_mass)
-        };
-        let (jump, change) = (minus(alone(velocity), alone(past)), minus(velocity, past));
+        (state.time, state.position) = (time, from_ref(&place));
+        let after = alone(forces, &mut state, &velocity);
+        let before = alone(forces, &mut state, &past);
+        let jump = minus(scaled(after, inverse_mass), scaled(before, inverse_mass));
+        let change = minus(velocity, past);
         if is_zero(jump) {
             return until.unchanged();
         }
@@ -119,4 +110,12 @@ impl Braked<'_> {
         let is_slow = length(along(velocity, mean, rest)) <= ROUNDING * fastest;
         if is_slow && first.is_finite() { Onward { first, mean } } else { until.unchanged() }
     }
+}
+
+/// The force on the only particle of a state at another velocity. One state does for all, as chips have little room for another.
+fn alone<'s>(forces: &dyn Force, state: &mut State<'s>, velocity: &'s Vec3) -> Vec3 {
+    let mut total = [Vec3::ZERO];
+    state.velocity = from_ref(velocity);
+    forces.add_to(state, 0..1, &mut total);
+    total[0]
 }

@@ -292,7 +292,7 @@ impl EventDriven<'_> {
         let normal = Touch::along(offset, velocity);
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
         let acceleration = paths.map(|path| path.acceleration());
-        let so_far = [0, 1].map(|i| Until::on(&paths[i], paths[i].x0, now, acceleration[i]));
+        let ways = paths; // Before they are set apart, which is no motion.
         let overlap = self.radius[row] + self.radius[other] - length(offset);
         if overlap > self.slack(row, other) {
             self.set_apart(rows, waits, &mut paths, normal * overlap);
@@ -301,7 +301,7 @@ impl EventDriven<'_> {
         let mixed = of_two(self.obstacles.materials, rows.map(|row| self.elasticity[row]), material);
         let slack = self.slack(row, other);
         let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };
-        let Answer { velocity: after, way, ends, slid } = self.answer(rows, waits, &so_far, &touch);
+        let Answer { velocity: after, way, ends, slid } = self.answer(rows, waits, &ways, &touch, now);
         if let Some(slid) = &slid {
             self.observer.slid(slid);
         }
@@ -345,8 +345,8 @@ impl EventDriven<'_> {
     }
 
     /// What a touch leaves two of, from when they touch to the step's end, in which those are braked as fast as they are then that do not wait.
-    fn answer(&self, rows: [usize; 2], waits: [bool; 2], until: &[Until; 2], touch: &Touch) -> Answer {
-        let (dt, rest) = (self.dt.seconds(), until[0].rest);
+    fn answer(&self, rows: [usize; 2], waits: [bool; 2], paths: &[Path; 2], touch: &Touch, now: Time) -> Answer {
+        let [dt, rest] = [self.dt, self.end - now].map(Time::seconds);
         let mut answer = touch.answer(dt, rest);
         let Some(air) = self.air else { return answer };
         // Whether they stay in touch may change with that.
@@ -356,7 +356,9 @@ impl EventDriven<'_> {
                 if waits[i] {
                     return touch.acceleration[i];
                 }
-                let onward = air.braking(self.attributes, rows[i]).onward(&until[i], answer.velocity[i]);
+                let (path, acceleration) = (&paths[i], touch.acceleration[i]);
+                let until = Until { path, place: path.x0, now, acceleration };
+                let onward = air.braking(self.attributes, rows[i]).onward(&until, answer.velocity[i]);
                 if stays { onward.held(touch.normal) } else { onward.mean }
             });
             answer = Touch { acceleration, ..*touch }.answer(dt, rest);

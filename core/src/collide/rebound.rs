@@ -39,9 +39,15 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
     /// braked by friction, and for the time that is left the mean acceleration of the path so far, less what brakes it no more.
     ///
-    /// Apart, so that what it works out is off the stack when the next hit is sought.
-    #[inline(never)]
+    /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
+        let beside = self.set_off(path, meeting, meeting.place);
+        self.leave(path, meeting, beside)
+    }
+
+    /// The same from a place beside the hit.
+    #[inline(never)]
+    fn leave(&mut self, path: &Path, meeting: &Meeting, beside: Vec3) -> Path {
         self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
@@ -55,14 +61,9 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let incoming = dot(minus(before, surface), normal);
         // Should the velocity already point out, the path left and came back between two chords: it rests.
         let outgoing = if incoming < 0.0 { -incoming * mixed.elasticity } else { incoming };
-        let answered = |surface: Vec3, outgoing: f32| {
-            let came = along(minus(before, surface), normal, -incoming);
-            let slip = plus(came, mixed.friction.answer(came, outgoing - incoming));
-            (came, slip, along(plus(surface, slip), normal, outgoing))
-        };
-        let until = Until::on(path, place, during[0], mean);
-        let pressed = self.onward(&until, answered(surface, 0.0).2).first;
-        let beside = self.set_off(path, meeting, place);
+        let until = Until { path, place, now: during[0], acceleration: mean };
+        let [_, _, lain] = answered(before, surface, normal, [incoming, 0.0], &mixed.friction);
+        let pressed = self.onward(&until, lain).first;
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(mean, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
@@ -77,7 +78,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             _ => Vec3::ZERO,
         };
         let surface = plus(surface, whole);
-        let (came, slip, after) = answered(surface, outgoing);
+        let [came, slip, after] = answered(before, surface, normal, [incoming, outgoing], &mixed.friction);
         let Self { id, row, mass, .. } = *self;
         let (time, closing) = (during[0], max(-incoming, 0.0));
         let mut told = [before, after];
@@ -99,7 +100,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     }
 
     /// How it goes on with another velocity. What constraints have moved is driven by the velocity that they have left it.
-    fn onward(&self, until: &Until, velocity: Vec3) -> Onward {
+    #[cfg_attr(one_by_one, inline(never))]
+    fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
         let air = self.air.filter(|_| self.left.is_none());
         air.map_or(until.unchanged(), |air| air.onward(until, velocity))
     }
@@ -205,6 +207,21 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         }
         self.walls.carry(chord.from, self.radius, [chord.during[0], now])
     }
+}
+
+/// The velocity that something has along a surface, as seen from there, before friction and after it, and in the world after all, where it comes in
+/// and goes out so fast.
+#[cfg_attr(one_by_one, inline(never))]
+fn answered(
+    before: Vec3,
+    surface: Vec3,
+    normal: Vec3,
+    [incoming, outgoing]: [f32; 2],
+    friction: &Friction,
+) -> [Vec3; 3] {
+    let came = along(minus(before, surface), normal, -incoming);
+    let slip = plus(came, friction.answer(came, outgoing - incoming));
+    [came, slip, along(plus(surface, slip), normal, outgoing)]
 }
 
 /// An acceleration as what takes along sees it that so fast a slip goes along: without its own, and Coriolis's.

@@ -40,6 +40,8 @@ impl<M: Surface + Sync> Force for Sink<M> {
         true
     }
 
+    // Apart on chips, so that its memory is off the stack while other forces of a tuple are asked.
+    #[cfg_attr(one_by_one, inline(never))]
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         for (total, &x) in total.iter_mut().zip(&state.position[rows]) {
             let toward = self.shape.nearest(x) - x;

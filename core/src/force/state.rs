@@ -124,7 +124,8 @@ impl<'a> State<'a> {
     }
 
     /// The attributes of some rows, without places and velocities.
-    #[inline(always)]
+    #[cfg_attr(one_by_one, inline(never))]
+    #[cfg_attr(not(one_by_one), inline(always))]
     pub(crate) fn attributes_of(&self, rows: Range<usize>) -> Self {
         // Changed in a copy: to write out the whole of it would take a chip more flash.
         let mut some = *self;
