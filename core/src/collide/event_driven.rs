@@ -344,7 +344,7 @@ impl EventDriven<'_> {
         }
     }
 
-    /// What a touch leaves two of, from when they touch to the step's end, in which those are braked as fast as they are then that do not wait.
+    /// The motions that a touch leaves two, from when they touch to the step's end, in which those are braked as fast as they are then that do not wait.
     fn answer(&self, rows: [usize; 2], waits: [bool; 2], paths: &[Path; 2], touch: &Touch, now: Time) -> Answer {
         let [dt, rest] = [self.dt, self.end - now].map(Time::seconds);
         let mut answer = touch.answer(dt, rest);

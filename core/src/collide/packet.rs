@@ -33,20 +33,20 @@ pub(super) struct Riders<F, const POINTS: bool> {
     /// True if there are springs, whose method leads beyond parabolas.
     pub(super) swing: bool,
     pub(super) elasticity: F,
-    /// What brakes them, if it depends on their velocities.
+    /// The forces that brake them, if any depend on their velocities.
     pub(super) air: Medium<F>,
     /// Coefficients of friction.
     pub(super) at_rest: F,
     pub(super) kinetic: F,
 }
 
-/// What is known of the forces that a hit changes.
+/// The forces that a hit changes, as far as they are known.
 #[derive(Clone, Copy)]
 pub(super) enum Medium<F> {
     /// There are none.
     Thin,
     Steady(Airs<F>),
-    /// Who is hit is left to those who know more.
+    /// Others: whoever is hit is followed by itself.
     Any,
 }
 

@@ -26,6 +26,7 @@ impl AllPairs {
 }
 
 impl Force for AllPairs {
+    // Apart on chips, as that of sinks is.
     #[cfg_attr(one_by_one, inline(never))]
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
         let square = self.softening * self.softening;

@@ -1,4 +1,4 @@
-//! What brakes brakes at the velocity that a hit leaves: bounces in air have the order of the method.
+//! Forces brake at the velocity that a hit leaves: bounces in air have the order of the method.
 
 use pointmass::force::{Friction, QuadraticDrag, Uniform, Wind};
 use pointmass::material::{Curve, Life, Over, Varying};
@@ -61,7 +61,7 @@ struct Air {
 }
 
 const MASS: f32 = 0.5;
-/// Of linear drag \[kg/s\], and of quadratic \[kg/m\].
+/// The coefficients of linear drag \[kg/s\], and of quadratic \[kg/m\].
 const K: f32 = 0.75;
 const SQUARE: f32 = 0.25;
 

@@ -3,7 +3,7 @@
 use crate::collide::air::ROUNDING;
 use crate::lanes::{Lanes, Vectors, max, negated, not};
 
-/// What falls steadily, and is braked by linear drag.
+/// Particles that fall steadily, and are braked by linear drag.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Airs<F> {
     /// The acceleration of all \[m/s²\], or none.
