@@ -335,7 +335,7 @@ impl EventDriven<'_> {
             }
             self.events.set(row, NextEvent { turns, since: until, ..event });
             let Path { x0, during, .. } = paths[i];
-            let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during };
+            let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during, pull: None };
             self.go(row, &onward);
             // Where one waits and does not get away, the other cannot go on either.
             if waits[1 - i] && after[i].dot(normal) < 0.0 {
@@ -417,9 +417,9 @@ impl EventDriven<'_> {
         let during = [self.instant(event.since), self.end];
         let (x0, v0) = (self.starts[0][row], self.starts[1][row]);
         if event.waits != 0 || self.inverse_mass[row] == 0.0 {
-            return Path { x0, v0: Vec3::ZERO, x1: x0, v1: Vec3::ZERO, during };
+            return Path { x0, v0: Vec3::ZERO, x1: x0, v1: Vec3::ZERO, during, pull: None };
         }
-        Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during }
+        Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during, pull: None }
     }
 
     fn id(&self, row: usize) -> Id {

@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn touches_are_found_when_they_happen() {
         let during = [Time::ZERO, Time::from_seconds(1.0)];
-        let way = |x0: Vec3, v: Vec3| Path { x0, v0: v, x1: x0 + v, v1: v, during };
+        let way = |x0: Vec3, v: Vec3| Path { x0, v0: v, x1: x0 + v, v1: v, during, pull: None };
         let (at, _) = first_touch(&way(Vec3::X * 5.0, Vec3::X * -4.0), 2.0, 1e-6);
         assert!((at.expect("they meet") - 0.75).abs() < 1e-6);
         assert_eq!(first_touch(&way(Vec3::X * 5.0, Vec3::X * -2.0), 2.0, 1e-6).0, None);

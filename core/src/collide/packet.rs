@@ -203,16 +203,18 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         if step.ticks() > MOST_TICKS {
             return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
         }
-        let flight = self.fly(*paths, cubics, face, clear, step, max_bounces);
+        let flight = self.fly(*paths, None, cubics, face, clear, step, max_bounces);
         let which = flight.settled.to_bitmask() & present;
         Outcome::of(&flight.onward, flight.settled, !which, flight.hits_of(which))
     }
 
-    /// The same among walls of any kind, of those who are `clear`.
+    /// The same among walls of any kind, of those who are `clear`. Those who slide already are driven by such accelerations.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
     fn fly(
         &self,
         mut onward: Paths<F>,
+        slide: Option<(F, Vectors<F>)>,
         mut cubics: Cubics<F>,
         walls: &impl Walls<F>,
         mut clear: F,
@@ -224,6 +226,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         clear = clear & not(meetings.unclear);
         let (mut left, mut hits, mut rounds) = ([[step.ticks() as i32; LANES]; PARTS], [0; ROUNDS], 1);
         let mut astray = clear & not(clear);
+        let mut slide = slide.unwrap_or((astray, onward.v0));
         if let Medium::Any = self.air {
             clear = clear & not(hit);
         }
@@ -235,10 +238,12 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
             rounds += 1;
             *hits = hit.to_bitmask();
             astray = astray | (hit & meetings.hits.beside_face);
-            let (next, is_free) = self.rebound(&onward, &cubics, &meetings, walls, step.seconds(), &mut left);
+            let ways = (&onward, &cubics, &slide);
+            let (next, slides, is_free) = self.rebound(ways, &meetings, walls, step.seconds(), &mut left);
             // Who has no time left is followed by itself.
             clear = clear & not(hit & not(is_free & next.time.simd_gt(next.time.all(0.0))));
             onward = Paths::select(hit, next, onward);
+            slide = (hit.select(slides.0, slide.0), Vectors::select(hit, slides.1, slide.1));
             cubics = onward.cubics();
             meetings = onward.first_meetings::<POINTS>(&cubics, walls, self.radius, hit);
             clear = clear & not(hit & meetings.unclear);
@@ -248,17 +253,17 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         Flight { onward, settled, astray, hits }
     }
 
-    /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, and whose are free.
+    /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, those that slide from there on and what drives them, and whose
+    /// are free.
     #[inline(always)]
     fn rebound(
         &self,
-        paths: &Paths<F>,
-        cubics: &Cubics<F>,
+        (paths, cubics, (slid, drive)): (&Paths<F>, &Cubics<F>, &(F, Vectors<F>)),
         meetings: &Meetings<F>,
         walls: &impl Walls<F>,
         dt: f32,
         left: &mut [[i32; LANES]; PARTS],
-    ) -> (Paths<F>, F) {
+    ) -> (Paths<F>, (F, Vectors<F>), F) {
         let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
@@ -276,7 +281,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         );
         let rest = rest / all(Time::SECOND.ticks() as f32);
         let leads = self.swing.then(|| Leads::of(cubics, paths.time, s, normal));
-        let mean = paths.acceleration();
+        let mean = Vectors::select(*slid, *drive, paths.acceleration());
         let mean = leads.map_or(mean, |leads| leads.onward(mean));
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
@@ -286,7 +291,8 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let until = [(paths.v0 + paths.v1) * all(0.5) + cubics.excess / paths.time, mean];
         let pressed = self.onward(until, still + held + normal * zero, rest);
         let (beside, is_free) = self.set_off(paths, cubics, meetings, walls, incoming);
-        let onward = slowed(outgoing, mean.dot(beside - place));
+        let work = mean.dot(beside - place);
+        let onward = slowed(outgoing, work);
         let pressing = negated(pressed.first.dot(normal));
         let rests = pressing.simd_gt(zero)
             & (incoming.simd_ge(zero) | (all(2.0) * onward).simd_lt(all(RESTING * dt) * pressing));
@@ -297,10 +303,12 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let x1 = leads.map_or(x1, |leads| leads.beyond(x1));
         let flying = Paths { x0: beside, v0: velocity, x1, v1: velocity + acceleration * rest, time: rest };
         if !rests.any() {
-            return (flying, is_free);
+            return (flying, (rests, acceleration), is_free);
         }
-        let resting = self.rest(paths, meetings, leads, beside, [held, pressed.held(normal)], rest);
-        (Paths::select(rests, resting, flying), is_free)
+        let borne = pressed.held(normal);
+        let held = if slid.any() { Vectors::select(*slid, risen(held, work), held) } else { held };
+        let resting = self.rest(paths, meetings, leads, beside, [held, borne], rest);
+        (Paths::select(rests, resting, flying), (rests, borne), is_free)
     }
 
     /// How those go on with other velocities of which the mean velocities and accelerations so far are known.
@@ -394,12 +402,21 @@ impl<F: Lanes> Riders<F, true> {
         if step.ticks() > MOST_TICKS {
             return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
         }
-        let flight = self.fly(onward, cubics, things, clear, step, max_bounces);
+        let flight = self.fly(onward, Some((lying, acceleration)), cubics, things, clear, step, max_bounces);
         let settled = flight.settled & not(flight.astray & not(mask_of(flight.settled, alone)));
         let which = settled.to_bitmask() & present;
         let hits = flight.hits_of(which) + (lying.to_bitmask() & which).count_ones();
         Outcome::of(&flight.onward, settled, !which, hits)
     }
+}
+
+/// The slips of what has slid into surfaces that curve, and is set off from them by such a work, as in `rebound`.
+#[inline(always)]
+fn risen<F: Lanes>(slip: Vectors<F>, work: F) -> Vectors<F> {
+    let square = slip.dot(slip);
+    let left = square + work.all(2.0) * work;
+    let share = (left / square).sqrt() & left.simd_gt(work.all(0.0));
+    Vectors::select(left.simd_lt(square), slip * share, slip)
 }
 
 /// Speeds after a way along which they gain `work` \[m²/s²\], a share of the square of it.

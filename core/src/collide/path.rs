@@ -22,6 +22,8 @@ pub(super) struct Path {
     pub(super) v1: Vec3,
     /// When it begins and ends.
     pub(super) during: [Time; 2],
+    /// Along a surface, which bears some of it, the mean acceleration of what drives it \[m/s²\]: its next hit is not to think that gone.
+    pub(super) pull: Option<Vec3>,
 }
 
 /// The same as a polynomial in the fraction of its time, for whoever asks for many points.
@@ -139,7 +141,7 @@ impl Path {
     /// How it runs as seen from another during the same time.
     pub(super) fn seen_from(&self, other: &Self) -> Self {
         let (x0, v0) = (self.x0 - other.x0, self.v0 - other.v0);
-        Self { x0, v0, x1: self.x1 - other.x1, v1: self.v1 - other.v1, during: self.during }
+        Self { x0, v0, x1: self.x1 - other.x1, v1: self.v1 - other.v1, during: self.during, pull: None }
     }
 
     /// The way on from a place and a velocity under a steady acceleration, until it ends.
@@ -147,7 +149,7 @@ impl Path {
     pub(super) fn onward(x0: Vec3, v0: Vec3, acceleration: Vec3, during: [Time; 2]) -> Self {
         let time = (during[1] - during[0]).seconds();
         let (x1, v1) = (along(x0, along(v0, acceleration, 0.5 * time), time), along(v0, acceleration, time));
-        Self { x0, v0, x1, v1, during }
+        Self { x0, v0, x1, v1, during, pull: None }
     }
 
     /// Tells whether its end shows nothing yet of what its velocity has taken in, as with the explicit Euler method.
@@ -173,6 +175,11 @@ impl Path {
     pub(super) fn acceleration(&self) -> Vec3 {
         let duration = self.duration();
         if duration > 0.0 { over(minus(self.v1, self.v0), duration) } else { Vec3::ZERO }
+    }
+
+    /// The mean acceleration of what drives it \[m/s²\], whatever bears some of that.
+    pub(super) fn drive(&self) -> Vec3 {
+        self.pull.unwrap_or_else(|| self.acceleration())
     }
 
     /// Its mean velocity \[m/s\], of which rounding of places is no part.
@@ -211,7 +218,7 @@ mod tests {
     fn chords_stay_near_the_path() {
         let (v0, a, h) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(0.0, -9.8, 0.0), 0.05);
         let during = [Time::ZERO, Time::from_seconds(h)];
-        let path = Path { x0: Vec3::ZERO, v0, x1: (v0 + a * (h / 2.0)) * h, v1: v0 + a * h, during };
+        let path = Path { x0: Vec3::ZERO, v0, x1: (v0 + a * (h / 2.0)) * h, v1: v0 + a * h, during, pull: None };
         let n = path.cubic().chords();
         assert!(n > 1 && n < MAX_CHORDS);
         for i in 0..n {
@@ -228,7 +235,7 @@ mod tests {
     #[test]
     fn pieces_join_in_space_and_time() {
         let during = [Time::from_seconds(3.0), Time::from_seconds(3.25)];
-        let path = Path { x0: Vec3::ZERO, v0: Vec3::X, x1: Vec3::ONE, v1: Vec3::Y, during };
+        let path = Path { x0: Vec3::ZERO, v0: Vec3::X, x1: Vec3::ONE, v1: Vec3::Y, during, pull: None };
         let (mut place, mut instant) = (path.x0, during[0]);
         for i in 0..5_u8 {
             let piece = path.piece(&path.cubic(), [i, i + 1].map(|end| f32::from(end) / 5.0), 0.0);

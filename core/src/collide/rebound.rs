@@ -7,7 +7,7 @@ use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
-use crate::math::{along, aside, dot, is_zero, length, max, minus, plus, scaled, sqrt};
+use crate::math::{along, aside, dot, is_zero, length, max, minus, over, plus, scaled, sqrt};
 use crate::observe::{Impact, Sliding};
 use crate::shape::{Collider, Hit, Ride, Segment};
 use crate::time::Time;
@@ -15,6 +15,9 @@ use glam::Vec3;
 
 /// The largest number of times that a point beside a hit is sought farther back.
 const MAX_RETREATS: u32 = 12;
+
+/// By how much a normal of length one turns at the most on a surface that moves within itself: by what rounding does.
+const WITHIN_ITSELF: f32 = 1e-6;
 
 /// A particle that a hit brings to rest on a surface.
 struct Landing<'r> {
@@ -35,6 +38,20 @@ struct Landing<'r> {
     friction: Friction,
 }
 
+impl Landing<'_> {
+    /// Where what slides on a surface that moves within itself, or along its normal, is after a time, and its velocity: along the surface it goes as in
+    /// a world that stands still, braked as much as it is on its way there, with such a drive and as fast in the end.
+    fn glide(&self, normal: Vec3, [drive, end]: [Vec3; 2], rest: f32, pressing: f32) -> (Vec3, Vec3) {
+        let Self { beside, ride, slip, after, acceleration, friction, .. } = *self;
+        let brakes = friction.kinetic * pressing > 0.0 && rest > 0.0;
+        let braked = if brakes { minus(over(minus(end, slip), rest), drive) } else { Vec3::ZERO };
+        let (velocity, mean) = (aside(after, normal), plus(aside(acceleration, normal), braked));
+        let way = scaled(along(velocity, mean, 0.5 * rest), rest);
+        let up = ride.map_or([0.0; 2], |ride| [dot(minus(ride.place, beside), normal), dot(ride.velocity[1], normal)]);
+        (along(plus(beside, way), normal, up[0]), along(along(velocity, mean, rest), normal, up[1]))
+    }
+}
+
 impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The way on from a hit: the velocity against the surface turned round and scaled by the elasticity, that along it
     /// braked by friction, and for the time that is left the mean acceleration of the path so far, less what brakes it no more.
@@ -53,7 +70,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
         let during = [path.instant(meeting.time), path.during[1]];
         let lead = self.lead(path, meeting.time, normal);
-        let mut mean = path.acceleration();
+        let mut mean = path.drive();
         if let Some(lead) = &lead {
             mean = plus(mean, lead.acceleration);
         }
@@ -78,7 +95,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             _ => Vec3::ZERO,
         };
         let surface = plus(surface, whole);
-        let [came, slip, after] = answered(before, surface, normal, [incoming, outgoing], &mixed.friction);
+        let [came, mut slip, mut after] = answered(before, surface, normal, [incoming, outgoing], &mixed.friction);
+        let going = self.onward(&until, after);
+        if rests && path.pull.is_some() {
+            slip = risen(slip, dot(mean, minus(beside, place)));
+            after = plus(surface, slip);
+        }
         let Self { id, row, mass, .. } = *self;
         let (time, closing) = (during[0], max(-incoming, 0.0));
         let mut told = [before, after];
@@ -88,7 +110,6 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let closing = if self.left.is_some() { max(-dot(minus(before, surface), normal), 0.0) } else { closing };
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
-        let going = self.onward(&until, after);
         if !rests {
             let mut onward = Path::onward(beside, along(plus(surface, slip), normal, onward), going.mean, during);
             self.lead_on(&lead, &mut onward, None);
@@ -148,19 +169,23 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let pressing = max(-dot(drive, normal), 0.0);
         let drive = along(drive, normal, pressing);
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: landing.friction }.after(rest);
-        let stays = is_zero(slip) && is_zero(end);
+        let (stays, pull) = (is_zero(slip) && is_zero(end), Some(landing.acceleration));
         let mut onward = if let Some(ride) = ride {
             // A particle that falls from where it was set off to goes along the surface meanwhile, which friction would
             // have kept it from.
             let fell = -incoming / pressing;
             let lay = stays && incoming < 0.0 && -incoming * fell < 2.0 * LAIN * meeting.hit.slack;
             let crept = if lay { scaled(came, 0.5 * fell) } else { Vec3::ZERO };
-            let (x1, v1) = ride.after(way, end);
-            Path { x0: beside, v0: after, x1: minus(x1, crept), v1, during }
+            // Only friction takes it along a surface that moves within itself, and not how that turns.
+            let glides = !is_zero(end) && length(minus(ride.turn * normal, normal)) <= WITHIN_ITSELF;
+            let (x1, v1) =
+                if glides { landing.glide(normal, [drive, end], rest, pressing) } else { ride.after(way, end) };
+            Path { x0: beside, v0: after, x1: minus(x1, crept), v1, during, pull }
         } else {
-            let stays = stays && has_lain(path, meeting, place);
-            let x0 = if stays { along(path.x0, surface, path.duration() - rest) } else { beside };
-            Path { x0, v0: after, x1: plus(along(x0, surface, rest), way), v1: plus(surface, end), during }
+            // Where what moves would take it is not known here.
+            let stays = stays && is_zero(surface) && has_lain(path, meeting, place);
+            let x0 = if stays { path.x0 } else { beside };
+            Path { x0, v0: after, x1: plus(along(x0, surface, rest), way), v1: plus(surface, end), during, pull }
         };
         let along = [drive, way, slip, end];
         if let Some(observer) = &mut self.observer {
@@ -229,13 +254,21 @@ fn seen(acceleration: Vec3, ride: Option<&Ride>, slip: Vec3) -> Vec3 {
     ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration_of(slip)))
 }
 
-/// Tells whether a path begins as what lay on the surface that it hits leaves off: nearby, and as fast as the surface.
+/// Tells whether a path begins as what lay on the surface that it hits, which stands still, leaves off: nearby, and hardly moving.
 /// Falling onto it anew each step, it has not moved at all; else it would creep.
 fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
-    let (surface, elapsed) = (meeting.hit.velocity, path.duration() * meeting.time);
     let near = LAIN * meeting.hit.slack;
-    let off = minus(along(path.x0, surface, elapsed), place);
-    dot(off, off) <= near * near && length(minus(path.v0, surface)) * elapsed <= near
+    let off = minus(path.x0, place);
+    dot(off, off) <= near * near && length(path.v0) * (path.duration() * meeting.time) <= near
+}
+
+/// The slip of what has slid into a surface that curves, and is set off from it: it would otherwise rise by as much in each step for nothing, since
+/// on its straight way it has not been braked as it should be on one that rises.
+#[cfg_attr(one_by_one, inline(never))]
+fn risen(slip: Vec3, work: f32) -> Vec3 {
+    let square = dot(slip, slip);
+    let left = square + 2.0 * work;
+    if left < square { scaled(slip, if left > 0.0 { sqrt(left / square) } else { 0.0 }) } else { slip }
 }
 
 /// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.

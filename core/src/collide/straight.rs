@@ -103,7 +103,7 @@ impl Straight<'_, '_> {
         let during = [between(path.during, hit.time), path.during[1]];
         let (place, rest) = (way.at(hit.time), (during[1] - during[0]).seconds());
 
-        let (acceleration, before) = (path.acceleration(), along(path.v0, minus(path.v1, path.v0), hit.time));
+        let (acceleration, before) = (path.drive(), along(path.v0, minus(path.v1, path.v0), hit.time));
         let relative = minus(before, hit.velocity);
         let (incoming, pressing) = (dot(relative, normal), -dot(acceleration, normal));
         // Where velocities say that it leaves what the way meets, it has come back meanwhile, or rests.
@@ -141,6 +141,7 @@ impl Straight<'_, '_> {
         let stays = rests && is_zero(hit.velocity) && is_zero(after) && is_zero(end);
         let x0 = if stays && length(minus(x0, path.x0)) <= LAIN * hit.slack { path.x0 } else { x0 };
         (path.x0, path.v0, path.v1, path.during) = (x0, after, end, during);
+        path.pull = rests.then_some(acceleration);
         path.x1 = along(x0, plus(after, end), 0.5 * rest);
     }
 

@@ -146,7 +146,8 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             let world = [acceleration, way, slip, end];
             observer.slid(&Sliding { mass, raised: Vec3::ZERO, world, along });
         }
-        let mut onward = Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during: path.during };
+        let mut onward =
+            Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during: path.during, pull: Some(acceleration) };
         self.lead_on(&self.lead(path, 0.0, normal), &mut onward, Some(&along));
         Some(onward)
     }

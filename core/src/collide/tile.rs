@@ -71,7 +71,7 @@ impl Tile<'_> {
         // A newborn has come only part of the way.
         let start = end - (end - attributes.lives.born[row]).min(*dt);
         let (x1, v1) = (self.position[row], self.velocity[row]);
-        Path { x0, v0, x1, v1, during: [start, end] }
+        Path { x0, v0, x1, v1, during: [start, end], pull: None }
     }
 
     /// Tells whether a row moves in the sub-step: it is not fixed, nor yet to be born, nor has it vanished.

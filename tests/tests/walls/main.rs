@@ -13,5 +13,6 @@ mod needles;
 mod poison;
 mod riding;
 mod scenes;
+mod smooth;
 mod tunnels;
 mod turning;

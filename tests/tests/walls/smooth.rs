@@ -1,0 +1,116 @@
+//! Smooth surfaces, whether they swing, spin or curve: nobody falls through them, and they take along nobody and give nobody energy.
+
+use pointmass::motion::Motion;
+use pointmass::shape::{Aabb, Collider, Cylinder, Moving, Plane, Sphere};
+use pointmass::{Gravity, Method, Particle, Scene, Vec3};
+use pointmass_tests::{is_run, run, started};
+
+const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+const G: f32 = 9.80665;
+
+/// Places and velocities at the end of so many steps.
+fn ends(walls: &dyn Collider, weight: Vec3, start: &[Particle], method: Method, h: f64, steps: u32) -> [Vec<Vec3>; 2] {
+    let forces = Gravity { acceleration: weight };
+    let scene = Scene { start, forces: &forces, colliders: walls, integrator: method.integrator(), ..Scene::EMPTY };
+    let mut system = started(&scene, start.len(), 1);
+    run(&mut system, &scene, h, steps);
+    let all = system.particles();
+    [all.position.to_vec(), all.velocity.to_vec()]
+}
+
+/// Floors that swing more gently than things fall hold points and the smallest balls, wherever these are and however they lean.
+#[test]
+fn nobody_falls_through_floors_that_swing() {
+    let mut cases = 0;
+    for (i, normal) in [Vec3::Y, Vec3::new(0.6, 0.8, 0.0), Vec3::NEG_Z].into_iter().enumerate() {
+        for rate in [60.0, 120.0, 240.0, 1000.0] {
+            for aside in [0.0, 0.1, 1.0] {
+                for radius in [0.0, 1e-6, 1e-5, 0.01] {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
+                    let u = normal.any_orthonormal_vector();
+                    let floor = Plane { point: Vec3::ZERO, normal };
+                    let motion = Motion { swing: normal * 0.2, frequency: 1.0, ..Motion::STILL };
+                    let floor = Moving::new(floor, &EVERYWHERE, motion);
+                    let elasticity = [0.0, 0.3][i % 2];
+                    let start: Vec<_> = (0..20)
+                        .map(|k| u * (aside + 0.005 * k as f32) + normal * (0.02 + 0.002 * k as f32))
+                        .map(|position| Particle { position, radius, elasticity, ..Particle::REST })
+                        .collect();
+                    let steps = (rate * 2.25) as u32;
+                    let method = [Method::Rk4, Method::Symplectic, Method::Verlet][i];
+                    let [places, _] = ends(&floor, normal * -G, &start, method, 1.0 / rate, steps);
+                    let least = places.iter().map(|x| x.dot(normal)).fold(f32::INFINITY, f32::min);
+                    assert!(least > 0.2 - 1e-3, "{normal} {rate}/s {aside} {radius}: {least}");
+                }
+            }
+        }
+    }
+}
+
+/// A surface without friction that moves within itself takes nobody along: who is at rest on it stays there, who slides goes straight on.
+#[test]
+fn smooth_surfaces_that_move_within_themselves_take_nobody_along() {
+    let mut cases = 0;
+    for normal in [Vec3::Y, Vec3::new(0.48, 0.6, 0.64)] {
+        let u = normal.any_orthonormal_vector();
+        for motion in [
+            Motion { axis: normal, spin: 1.0, ..Motion::STILL },
+            Motion { axis: normal, spin: -3.0, pivot: u * 0.3, ..Motion::STILL },
+            Motion { swing: u * 0.1, frequency: 1.0, ..Motion::STILL },
+        ] {
+            for h in [0.2, 1.0 / 60.0, 1.0 / 240.0] {
+                for radius in [0.0, 0.05] {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
+                    let floor = Moving::new(Plane { point: Vec3::ZERO, normal }, &EVERYWHERE, motion);
+                    let drift = normal.cross(u) * 0.3;
+                    let at = |velocity| Particle {
+                        position: u * 0.5 + normal * (radius + 1e-5),
+                        velocity,
+                        radius,
+                        ..Particle::REST
+                    };
+                    let start = [at(Vec3::ZERO), at(drift)];
+                    let steps = (2.0 / h) as u32;
+                    let [places, velocities] = ends(&floor, normal * -G, &start, Method::Rk4, h, steps);
+                    for (i, expected) in [Vec3::ZERO, drift].into_iter().enumerate() {
+                        let aside = |v: Vec3| v - normal * v.dot(normal);
+                        let way = aside(places[i] - start[i].position - expected * (h as f32 * steps as f32)).length();
+                        let slip = aside(velocities[i] - expected).length();
+                        assert!(way < 1e-4 && slip < 1e-4, "{motion:?} {h} {radius}: {way} m, {slip} m/s");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What slides in a bowl or a trough without friction gains next to no energy in many swings, at any step.
+#[test]
+fn what_slides_in_a_bowl_gains_no_energy() {
+    let bowl = Sphere { center: Vec3::ZERO, radius: 1.0 };
+    let trough = Cylinder { center: Vec3::ZERO, radius: 1.0, height: 4.0 };
+    for radius in [0.0f32, 0.1] {
+        let reach = 1.0 - radius;
+        let at = |angle: f32| Vec3::new(-angle.cos(), 0.0, angle.sin()) * (reach * 0.999_99);
+        let start: Vec<_> =
+            [0.1, 0.3, 0.9].map(|angle| Particle { position: at(angle), radius, ..Particle::REST }).to_vec();
+        for walls in [&bowl as &dyn Collider, &trough] {
+            for (method, h) in [Method::Rk4, Method::Symplectic, Method::Verlet]
+                .into_iter()
+                .flat_map(|method| [1.0 / 30.0, 1.0 / 60.0, 1.0 / 240.0].map(|h| (method, h)))
+            {
+                let [places, velocities] = ends(walls, Vec3::NEG_X * G, &start, method, h, (5.0 / h) as u32);
+                for (i, begun) in start.iter().enumerate() {
+                    let energy = |x: Vec3, v: Vec3| 0.5 * v.length_squared() + G * (x.x + reach);
+                    let share = energy(places[i], velocities[i]) / energy(begun.position, Vec3::ZERO);
+                    println!("{method:?} {h} {radius} {i}: {share}");
+                    assert!(share < 1.05 || i == 0 && share < 1.3, "{method:?} {h} {radius} {i}: {share}");
+                }
+            }
+        }
+    }
+}
