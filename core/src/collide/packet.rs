@@ -78,6 +78,33 @@ struct Flight<F> {
     hits: [u32; ROUNDS],
 }
 
+/// Those of a packet who go along surfaces, and what drives them, whatever these bear of it, as `Path::pull`.
+#[derive(Clone, Copy)]
+struct Slides<F> {
+    are: F,
+    pull: Vectors<F>,
+}
+
+impl<F: Lanes> Slides<F> {
+    /// Nobody.
+    #[inline(always)]
+    fn none(like: F) -> Self {
+        Self { are: like.all(0.0), pull: Vectors::splat(like, Vec3::ZERO) }
+    }
+
+    /// The first of two where a mask says so, else the second.
+    #[inline(always)]
+    fn select(mask: F, a: Self, b: Self) -> Self {
+        Self { are: mask.select(a.are, b.are), pull: Vectors::select(mask, a.pull, b.pull) }
+    }
+
+    /// What drives all on their paths.
+    #[inline(always)]
+    fn drive(&self, paths: &Paths<F>) -> Vectors<F> {
+        Vectors::select(self.are, self.pull, paths.acceleration())
+    }
+}
+
 impl<F> Flight<F> {
     /// How often these were hit.
     #[inline(always)]
@@ -203,18 +230,16 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         if step.ticks() > MOST_TICKS {
             return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
         }
-        let flight = self.fly(*paths, None, cubics, face, clear, step, max_bounces);
+        let flight = self.fly((*paths, Slides::none(paths.time)), cubics, face, clear, step, max_bounces);
         let which = flight.settled.to_bitmask() & present;
         Outcome::of(&flight.onward, flight.settled, !which, flight.hits_of(which))
     }
 
-    /// The same among walls of any kind, of those who are `clear`. Those who slide already are driven by such accelerations.
+    /// The same among walls of any kind, of those who are `clear`.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     fn fly(
         &self,
-        mut onward: Paths<F>,
-        slide: Option<(F, Vectors<F>)>,
+        (mut onward, mut slides): (Paths<F>, Slides<F>),
         mut cubics: Cubics<F>,
         walls: &impl Walls<F>,
         mut clear: F,
@@ -226,7 +251,6 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         clear = clear & not(meetings.unclear);
         let (mut left, mut hits, mut rounds) = ([[step.ticks() as i32; LANES]; PARTS], [0; ROUNDS], 1);
         let mut astray = clear & not(clear);
-        let mut slide = slide.unwrap_or((astray, onward.v0));
         if let Medium::Any = self.air {
             clear = clear & not(hit);
         }
@@ -238,12 +262,12 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
             rounds += 1;
             *hits = hit.to_bitmask();
             astray = astray | (hit & meetings.hits.beside_face);
-            let ways = (&onward, &cubics, &slide);
-            let (next, slides, is_free) = self.rebound(ways, &meetings, walls, step.seconds(), &mut left);
+            let ways = (&onward, &cubics, &slides);
+            let (next, next_slides, is_free) = self.rebound(ways, &meetings, walls, step.seconds(), &mut left);
             // Who has no time left is followed by itself.
             clear = clear & not(hit & not(is_free & next.time.simd_gt(next.time.all(0.0))));
             onward = Paths::select(hit, next, onward);
-            slide = (hit.select(slides.0, slide.0), Vectors::select(hit, slides.1, slide.1));
+            slides = Slides::select(hit, next_slides, slides);
             cubics = onward.cubics();
             meetings = onward.first_meetings::<POINTS>(&cubics, walls, self.radius, hit);
             clear = clear & not(hit & meetings.unclear);
@@ -253,17 +277,16 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         Flight { onward, settled, astray, hits }
     }
 
-    /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, those that slide from there on and what drives them, and whose
-    /// are free.
+    /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, those of them that slide, and whose are free.
     #[inline(always)]
     fn rebound(
         &self,
-        (paths, cubics, (slid, drive)): (&Paths<F>, &Cubics<F>, &(F, Vectors<F>)),
+        (paths, cubics, slides): (&Paths<F>, &Cubics<F>, &Slides<F>),
         meetings: &Meetings<F>,
         walls: &impl Walls<F>,
         dt: f32,
         left: &mut [[i32; LANES]; PARTS],
-    ) -> (Paths<F>, (F, Vectors<F>), F) {
+    ) -> (Paths<F>, Slides<F>, F) {
         let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
@@ -281,7 +304,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         );
         let rest = rest / all(Time::SECOND.ticks() as f32);
         let leads = self.swing.then(|| Leads::of(cubics, paths.time, s, normal));
-        let mean = Vectors::select(*slid, *drive, paths.acceleration());
+        let mean = slides.drive(paths);
         let mean = leads.map_or(mean, |leads| leads.onward(mean));
         let before = paths.velocity(cubics, s);
         let incoming = before.dot(normal);
@@ -303,12 +326,12 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let x1 = leads.map_or(x1, |leads| leads.beyond(x1));
         let flying = Paths { x0: beside, v0: velocity, x1, v1: velocity + acceleration * rest, time: rest };
         if !rests.any() {
-            return (flying, (rests, acceleration), is_free);
+            return (flying, Slides::none(like), is_free);
         }
         let borne = pressed.held(normal);
-        let held = if slid.any() { Vectors::select(*slid, risen(held, work), held) } else { held };
+        let held = if slides.are.any() { Vectors::select(slides.are, risen(held, work), held) } else { held };
         let resting = self.rest(paths, meetings, leads, beside, [held, borne], rest);
-        (Paths::select(rests, resting, flying), (rests, borne), is_free)
+        (Paths::select(rests, resting, flying), Slides { are: rests, pull: borne }, is_free)
     }
 
     /// How those go on with other velocities of which the mean velocities and accelerations so far are known.
@@ -402,7 +425,8 @@ impl<F: Lanes> Riders<F, true> {
         if step.ticks() > MOST_TICKS {
             return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
         }
-        let flight = self.fly(onward, Some((lying, acceleration)), cubics, things, clear, step, max_bounces);
+        let flight =
+            self.fly((onward, Slides { are: lying, pull: acceleration }), cubics, things, clear, step, max_bounces);
         let settled = flight.settled & not(flight.astray & not(mask_of(flight.settled, alone)));
         let which = settled.to_bitmask() & present;
         let hits = flight.hits_of(which) + (lying.to_bitmask() & which).count_ones();

@@ -39,16 +39,16 @@ struct Landing<'r> {
 }
 
 impl Landing<'_> {
-    /// Where what slides on a surface that moves within itself, or along its normal, is after a time, and its velocity: along the surface it goes as in
-    /// a world that stands still, braked as much as it is on its way there, with such a drive and as fast in the end.
-    fn glide(&self, normal: Vec3, [drive, end]: [Vec3; 2], rest: f32, pressing: f32) -> (Vec3, Vec3) {
-        let Self { beside, ride, slip, after, acceleration, friction, .. } = *self;
+    /// The place and the velocity after a time of what slides on a surface that moves within itself, or along its normal: along the surface it goes as in
+    /// a world that stands still, braked as much as it is as seen from there, with such a drive and as fast in the end.
+    fn glide(&self, ride: &Ride, normal: Vec3, [drive, end]: [Vec3; 2], rest: f32, pressing: f32) -> (Vec3, Vec3) {
+        let Self { beside, slip, after, acceleration, friction, .. } = *self;
         let brakes = friction.kinetic * pressing > 0.0 && rest > 0.0;
         let braked = if brakes { minus(over(minus(end, slip), rest), drive) } else { Vec3::ZERO };
         let (velocity, mean) = (aside(after, normal), plus(aside(acceleration, normal), braked));
         let way = scaled(along(velocity, mean, 0.5 * rest), rest);
-        let up = ride.map_or([0.0; 2], |ride| [dot(minus(ride.place, beside), normal), dot(ride.velocity[1], normal)]);
-        (along(plus(beside, way), normal, up[0]), along(along(velocity, mean, rest), normal, up[1]))
+        let (raised, rising) = (dot(minus(ride.place, beside), normal), dot(ride.velocity[1], normal));
+        (along(plus(beside, way), normal, raised), along(along(velocity, mean, rest), normal, rising))
     }
 }
 
@@ -179,7 +179,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             // Only friction takes it along a surface that moves within itself, and not how that turns.
             let glides = !is_zero(end) && length(minus(ride.turn * normal, normal)) <= WITHIN_ITSELF;
             let (x1, v1) =
-                if glides { landing.glide(normal, [drive, end], rest, pressing) } else { ride.after(way, end) };
+                if glides { landing.glide(ride, normal, [drive, end], rest, pressing) } else { ride.after(way, end) };
             Path { x0: beside, v0: after, x1: minus(x1, crept), v1, during, pull }
         } else {
             // Where what moves would take it is not known here.
