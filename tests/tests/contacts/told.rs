@@ -188,7 +188,8 @@ fn who_bounces_twice_is_told_of_twice() {
 
 #[test]
 fn nobody_is_told_of_who_rests_in_a_heap() {
-    let heap = Penalty { stiffness: 5e3, damping: 0.5, ..PENALTY };
+    // Without friction a heap comes to rest where nobody can go lower; with a dashpot's for friction it creeps, and one may fall at any time.
+    let heap = Penalty { stiffness: 5e3, damping: 0.5, friction: Friction::NONE, ..PENALTY };
     let walls = Cuboid { min: Vec3::splat(-0.4), max: Vec3::new(0.4, 5.0, 0.4) };
     let cases = [
         (Method::Symplectic, 60, 8),
