@@ -99,6 +99,32 @@ fn a_cantilever_sags_as_beam_theory_has_it() {
     }
 }
 
+/// What it moves in a sub-step is less than rounding of its places far from the origin, and is not lost in that.
+#[test]
+fn far_from_the_origin_a_wire_sags_as_near_it() {
+    let mut methods = Method::ALL.iter().cycle();
+    let mut random = Random::new(11);
+    for (edges, long, thick) in [(20u32, 0.3f32, 2e-3f32), (12, 0.5, 4e-3), (30, 0.2, 1e-3)] {
+        for far in [10.0, 100.0, 300.0] {
+            for (substeps, lag) in [(5, 2.0), (20, 2.0), (60, 4.0)] {
+                let [along, down] = pose(&mut random);
+                let root = random.vector(1.0).normalize() * far;
+                let rod = Rod { root, along, long, edges };
+                let density = 1200.0 * std::f32::consts::PI * thick * thick;
+                let params = StrandParams::round(thick, 2e9, 0.35);
+                let sag = density * G * long.powi(4) / (8.0 * params.bending[0]);
+                let slowest = 3.516 * (params.bending[0] / (density * long.powi(4))).sqrt();
+                let start = rod.clamped(density);
+                let wire = strand(&start, StrandParams { damping: lag / slowest, ..params });
+                let method = *methods.next().expect("there is always a next one");
+                let end = tip(&start, &wire, down * G, method, substeps, 14.0 * lag / slowest);
+                let has = (end - start[start.len() - 1].position).dot(down) / sag;
+                assert!((has - 1.0).abs() < 0.03, "{method}, {far} m off, {edges} edges, {substeps} sub-steps: {has}");
+            }
+        }
+    }
+}
+
 /// What gravity moves across an edge in a sub-step stretches nothing, though it is a jerk to damping that acts over many sub-steps.
 #[test]
 fn damping_over_many_substeps_does_not_hold_a_cantilever() {

@@ -165,6 +165,15 @@ impl Bodies<'_> {
         self.marks[row] |= SHIFTED;
     }
 
+    /// Moves a particle as [`shift`](Self::shift) does, and by what rounding has left of its way before; keeps what it leaves of it now \[m\].
+    pub(super) fn shift_on(&mut self, row: usize, by: Vec3, left: &mut Vec3) {
+        let (from, way) = (self.position[row], by + *left);
+        self.shift(row, by);
+        self.position[row] = from + way;
+        let lost = way - (self.position[row] - from);
+        *left = if lost.is_finite() { lost } else { Vec3::ZERO };
+    }
+
     /// Moves a particle by `by` \[m\], or makes it faster by that \[m/s\].
     pub(super) fn change(&mut self, what: Change, row: usize, by: Vec3) {
         match what {

@@ -1,7 +1,7 @@
 //! What the equations of a strand ask for: once from where the method has brought it, and again from where their solution has.
 
 use super::frame::{bring, strain};
-use super::joint::Joint;
+use super::joint::{Begun, Joint};
 use super::piece::{BEND, EQUATIONS, PULL, Piece, Step, TURN, Writer};
 use crate::constrain::turn::Turn;
 use crate::math::length;
@@ -27,19 +27,19 @@ impl<const LANES: usize> Writer<'_, '_, '_, LANES>
 where
     [f32; LANES]: Pod,
 {
-    /// Writes what the equations of a piece ask for beyond what the solution so far, where there is one, has given them. The frames of its edges were `begun`
+    /// Writes what the equations of a piece ask for beyond what the solution so far, where there is one, has given them. Its joints were `begun`
     /// when the sub-step began.
     ///
     /// A solution takes edges for moving straight that turn: what gravity moves across an edge in a sub-step seems to stretch it, by half the square of that over
     /// its length. Where strains are damped so little is a jerk, and a strand would be held by it. Asking again from where the solution has brought
     /// it is a second step of Newton's method; the factors of the first one serve.
-    pub(super) fn ask(&mut self, piece: &Piece, joints: &[Joint], begun: &[[f32; 4]]) {
+    pub(super) fn ask(&mut self, piece: &Piece, joints: &[Joint], begun: &[Begun]) {
         let mut last: Option<Seen> = None;
         for number in 0..piece.count {
             for equation in [0, 1, 2, TURN] {
                 self.band.ask(self.lane, number * EQUATIONS + equation, 0.0);
             }
-            let edge = (number + 1 < piece.count).then(|| self.seen(number, &joints[number], begun[number]));
+            let edge = (number + 1 < piece.count).then(|| self.seen(number, joints, begun));
             if let Some(edge) = edge {
                 self.ask_of_edge(number, edge, &joints[number]);
                 if let Some(last) = last {
@@ -51,15 +51,17 @@ where
     }
 
     /// The edge from a point to the next.
-    fn seen(&self, number: usize, joint: &Joint, begun: [f32; 4]) -> Seen {
+    fn seen(&self, number: usize, joints: &[Joint], begun: &[Begun]) -> Seen {
         let ends = [number, number + 1].map(|end| self.point(end));
         let [p, q] = ends.map(|end| end.row);
-        let [now, before] = [self.bodies.position, self.bodies.before[0]].map(|x| x[q] - x[p]);
-        let lengths = [now, before].map(length);
+        let (x, x0, next) = (&*self.bodies.position, self.bodies.before[0], number + 1);
+        let now = x[q] - x[p] + (joints[next].left - joints[number].left);
+        let before = x0[q] - x0[p] + (begun[next].left - begun[number].left);
+        let (lengths, turn) = ([now, before].map(length), Turn(begun[number].turn));
         let direction = before / lengths[1];
-        let begun = if direction.is_finite() { bring(Turn(begun), direction) } else { Turn(begun) };
+        let begun = if direction.is_finite() { bring(turn, direction) } else { turn };
         let embedded = !(ends[0].weight + ends[1].weight > 0.0);
-        Seen { length: lengths, frame: [Turn(joint.turn), begun], embedded }
+        Seen { length: lengths, frame: [Turn(joints[number].turn), begun], embedded }
     }
 
     /// What is left for an edge to ask for.

@@ -1,7 +1,7 @@
 //! The energy of strands that nothing holds, or that hang from what stands still.
 
 use super::frame::{bring, strain};
-use super::joint::Joint;
+use super::joint::{Begun, Joint};
 use super::params::StrandParams;
 use crate::constrain::Bodies;
 use crate::constrain::budget::{self, Budget, Free};
@@ -12,8 +12,8 @@ use glam::Vec3;
 
 /// Words to work with, for each point.
 pub(super) const WORDS: usize = 3;
-/// Words for the frames of before, for each point.
-pub(super) const FRAMES: usize = 4;
+/// Words for what its joints were, for each point.
+pub(super) const BEGUN: usize = size_of::<Begun>() / 4;
 
 /// Words kept for each strand.
 pub(super) const PURSE: usize = budget::WORDS + whole::WORDS;
@@ -63,8 +63,8 @@ pub(super) struct Bounded<'a> {
 /// What it does and works with in a sub-step.
 pub(super) struct Course<'m> {
     pub(super) joints: &'m mut [Joint],
-    /// The frames of its edges as the sub-step began.
-    pub(super) before: &'m [[f32; 4]],
+    /// What they were as the sub-step began.
+    pub(super) before: &'m [Begun],
     pub(super) work: &'m mut [u32],
 }
 
@@ -105,7 +105,7 @@ impl Bounded<'_> {
             let mut free = Free { bodies, rows: self.rows, due, goal };
             let turned = free.hold_back(most, |places, turned| self.stored(joints, frames(turned), places));
             for number in 0..self.rows.len() - 1 {
-                let way = self.way(number, bodies.position);
+                let way = self.way(number, joints, bodies.position);
                 joints[number].turn = frame(joints, frames(turned), number, way).0;
             }
             now = energy(bodies, joints);
@@ -114,25 +114,25 @@ impl Bounded<'_> {
         purse.budget.keep(now, most);
     }
 
-    /// The way from a point to the next.
-    pub(super) fn way(&self, number: usize, places: &[Vec3]) -> Vec3 {
+    /// The way from a point to the next, with what rounding has left of where they are.
+    pub(super) fn way(&self, number: usize, joints: &[Joint], places: &[Vec3]) -> Vec3 {
         let [from, to] = [number, number + 1].map(|point| places[self.rows[point] as usize]);
-        to - from
+        to - from + (joints[number + 1].left - joints[number].left)
     }
 
     /// The energy of strain where its points are in these places \[J\]. What is stiffer than it takes to be brought to its shape in a
     /// sub-step is taken for so stiff: of the rest of its strain no motion comes. Where something holds it, that is so of how it stretches; all of it
     /// bends as one.
-    pub(super) fn stored(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3]) -> f32 {
+    pub(super) fn stored(&self, joints: &[Joint], turned: Option<(Turn, &[Begun])>, places: &[Vec3]) -> f32 {
         self.strained(joints, turned, places, 0.5 * self.mass / (self.h * self.h))
     }
 
     /// The same, where edges are no stiffer than is shown \[N/m\].
-    fn strained(&self, joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, places: &[Vec3], shown: f32) -> f32 {
+    fn strained(&self, joints: &[Joint], turned: Option<(Turn, &[Begun])>, places: &[Vec3], shown: f32) -> f32 {
         let StrandParams { stretch, bending: [first, second], twisting, .. } = *self.params;
         let (mut sum, mut last) = (0.0, None);
         for (number, joint) in joints.iter().enumerate().take(self.rows.len() - 1) {
-            let way = self.way(number, places);
+            let way = self.way(number, joints, places);
             let stiff = stretch.map_or(f32::INFINITY, |stretch| stretch / joint.length);
             let stiff = min(stiff, shown);
             let long = length(way) - joint.length;
@@ -158,9 +158,9 @@ impl Bounded<'_> {
 }
 
 /// The frame of an edge that has got into this direction: from where it is, or from where it was, turned as a rigid body.
-pub(super) fn frame(joints: &[Joint], turned: Option<(Turn, &[[f32; 4]])>, number: usize, way: Vec3) -> Turn {
+pub(super) fn frame(joints: &[Joint], turned: Option<(Turn, &[Begun])>, number: usize, way: Vec3) -> Turn {
     let from = match turned {
-        Some((turn, before)) => turn.after(Turn(before[number])),
+        Some((turn, before)) => turn.after(Turn(before[number].turn)),
         None => Turn(joints[number].turn),
     };
     let direction = way / length(way);

@@ -4,6 +4,7 @@
 //! Newton's method may, where a whip cracks or a wire between two hooks is plucked: that is taken out again.
 
 use super::bounded::{Bounded, Course, frame};
+use super::joint::{Begun, Joint};
 use crate::constrain::Bodies;
 use crate::constrain::turn::Turn;
 use crate::math::{clamp, max, min, sqrt};
@@ -40,9 +41,11 @@ impl Bounded<'_> {
         }
         if !(most - strained >= LEAST * LEAST * moving) {
             let begun = Some((Turn::NONE, before));
-            self.halve(bodies, |bodies| self.moving(bodies) + self.stored(joints, begun, bodies.position) <= most);
+            self.halve(bodies, (joints, before), |bodies, joints| {
+                self.moving(bodies) + self.stored(joints, begun, bodies.position) <= most
+            });
             for number in 0..self.rows.len() - 1 {
-                joints[number].turn = frame(joints, begun, number, self.way(number, bodies.position)).0;
+                joints[number].turn = frame(joints, begun, number, self.way(number, joints, bodies.position)).0;
             }
             (moving, strained) = (self.moving(bodies), self.stored(joints, None, bodies.position));
         }
@@ -55,23 +58,30 @@ impl Bounded<'_> {
     }
 
     /// Leaves as much of the ways from where all were as fits.
-    fn halve(&self, bodies: &mut Bodies<'_>, fits: impl Fn(&Bodies<'_>) -> bool) {
+    fn halve(
+        &self,
+        bodies: &mut Bodies<'_>,
+        (joints, before): (&mut [Joint], &[Begun]),
+        fits: impl Fn(&Bodies<'_>, &[Joint]) -> bool,
+    ) {
         let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
         for _ in 0..HALVINGS {
             let next = 0.5 * (least + far);
-            self.go_back(bodies, next / now);
+            self.go_back(bodies, joints, before, next / now);
             now = next;
-            *if fits(bodies) { &mut least } else { &mut far } = now;
+            *if fits(bodies, joints) { &mut least } else { &mut far } = now;
         }
-        self.go_back(bodies, least / now);
+        self.go_back(bodies, joints, before, least / now);
     }
 
     /// Leaves such a share of the ways from where all were.
-    fn go_back(&self, bodies: &mut Bodies<'_>, share: f32) {
-        for row in self.rows.iter().map(|&row| row as usize) {
-            let by = (bodies.before[0][row] - bodies.position[row]) * (1.0 - share);
+    fn go_back(&self, bodies: &mut Bodies<'_>, joints: &mut [Joint], before: &[Begun], share: f32) {
+        for ((&row, joint), begun) in self.rows.iter().zip(joints).zip(before) {
+            let row = row as usize;
+            let way = bodies.before[0][row] - bodies.position[row] + (begun.left - joint.left);
+            let by = way * (1.0 - share);
             if bodies.inverse_mass[row] > 0.0 && by.is_finite() {
-                bodies.shift(row, by);
+                bodies.shift_on(row, by, &mut joint.left);
             }
         }
     }

@@ -31,7 +31,7 @@ use bounded::{Bounded, Course, PURSE, Purse};
 use bytemuck::Pod;
 use frame::{bring, frame, strain};
 use glam::Vec3;
-use joint::{Joint, KEPT};
+use joint::{Begun, Joint, KEPT};
 use piece::{EQUATIONS, Piece, Step, TURN, Writer, act};
 
 /// Elastic strands, in the shape in which they begin at rest: straight ones, and curls.
@@ -50,7 +50,9 @@ use piece::{EQUATIONS, Piece, Step, TURN, Writer, act};
 /// the sub-step's beginning, and both momenta of a strand that
 /// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps, nor does one that hangs from what stands still: what would be too much is taken from how it
 /// deforms, where the strain of what is stiffer than it takes to be brought to its shape in a sub-step counts for no more than that. What swings
-/// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h. In a periodic room a free strand has to be shorter than half a side.
+/// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h. Where something holds
+/// it, what rounding leaves of the way of each point is kept, so that it bends far from the origin as near it; what nothing holds loses of how it deforms
+/// what goes slower than half a rounding of its coordinates in a sub-step, ε |x| / 2 h. In a periodic room a free strand has to be shorter than half a side.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
 /// cannot turn about itself there, unless it is turned ([`turning`](Self::turning)); a single one is a hinge. What turns an end of a strand that nobody
@@ -240,9 +242,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let Some(rows_of) = rows.get_mut(count * longest..(count + 1) * longest) else { return };
                 let mut piece = self.piece(bodies, strand, from, rows_of);
                 from = piece.first + piece.count;
-                let is_free = |&row: &u32| bodies.inverse_mass[row as usize] > 0.0;
                 let rows_of = &rows_of[..piece.count];
-                piece.is_free = !piece.is_turned() && rows_of.iter().all(is_free);
+                piece.is_held = rows_of.iter().any(|&row| !(bodies.inverse_mass[row as usize] > 0.0));
+                piece.is_free = !piece.is_turned() && !piece.is_held;
                 piece.is_hung = !piece.is_free && piece.turning == [0.0; 2] && hangs(bodies, rows_of);
                 piece.whole = (piece.count == strand[1] - strand[0]).then_some(number);
                 let is_kept = piece.is_left_alone() && piece.whole.is_some();
@@ -277,7 +279,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         let step = Step { params: &self.params, h: bodies.substep.seconds() };
         let mut memory = memory;
         let work = take(&mut memory, bounded::WORDS * longest);
-        let frames: &mut [[f32; 4]] = bytemuck::cast_slice_mut(take(&mut memory, bounded::FRAMES * longest * LANES));
+        let all_begun: &mut [Begun] = bytemuck::cast_slice_mut(take(&mut memory, bounded::BEGUN * longest * LANES));
         let mut band = Band::<LANES>::new(memory, most * EQUATIONS);
         let (mut limits, mut masses, mut most_squared) = ([None; LANES], [0.0; LANES], [0.0; LANES]);
         let points = |lane: usize| lane * longest..lane * longest + pieces[lane].count;
@@ -288,21 +290,21 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             Bounded { params: &self.params, rows, inverse_mass, h: step.h, mass, is_free }
         };
         for (lane, piece) in pieces.iter().enumerate() {
-            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &mut frames[points(lane)]);
-            begun.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.turn);
-            catch_up_with_held(bodies, rows);
+            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &mut all_begun[points(lane)]);
+            begun.iter_mut().zip(&*joints).for_each(|(to, joint)| *to = joint.begun());
             masses[lane] = mean_mass(bodies, rows);
             limits[lane] = piece
                 .purse(purses, &mut [0; PURSE])
                 .map(|purse| bounded(lane, masses[lane]).limits(bodies, joints, &purse));
+            follow_velocities(bodies, piece, rows, joints);
             let mut writer = Writer { step: &step, band: &mut band, lane, bodies, rows, mass: masses[lane] };
-            writer.write(piece, joints);
+            writer.write(piece, joints, begun);
             writer.ask(piece, joints, begun);
         }
         band.factor();
         band.solve();
         for (lane, piece) in pieces.iter().enumerate() {
-            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &frames[points(lane)]);
+            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &all_begun[points(lane)]);
             joints.iter_mut().for_each(|joint| joint.tension = 0.0);
             let most = most_again(&band, lane, bodies, rows);
             let is_solved = act((&band, lane), piece, bodies, rows, joints, masses[lane]);
@@ -312,7 +314,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
         }
         band.solve();
         for (lane, piece) in pieces.iter().enumerate() {
-            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &frames[points(lane)]);
+            let (rows, joints, begun) = (&rows[points(lane)], &mut all[joints(lane)], &all_begun[points(lane)]);
             if way_squared(&band, lane, piece.count) < most_squared[lane] {
                 act((&band, lane), piece, bodies, rows, joints, masses[lane]);
             }
@@ -324,10 +326,18 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     }
 }
 
-/// Lets a piece of which something is held begin where that is now.
-fn catch_up_with_held(bodies: &mut Bodies<'_>, rows: &[u32]) {
-    if rows.iter().any(|&row| !(bodies.inverse_mass[row as usize] > 0.0)) {
-        rows.iter().for_each(|&row| bodies.catch_up(row as usize));
+/// Lets a piece of which something is held begin where velocities lead, and tells its joints what rounding leaves of the way to there: far from the origin
+/// that is more than a wire moves in a sub-step, and it would not move at all.
+fn follow_velocities(bodies: &mut Bodies<'_>, piece: &Piece, rows: &[u32], joints: &mut [Joint]) {
+    let h = bodies.substep.seconds();
+    for (&row, joint) in rows.iter().zip(joints) {
+        if !piece.is_held {
+            joint.left = Vec3::ZERO;
+            continue;
+        }
+        bodies.catch_up(row as usize);
+        let left = joint.left - bodies.lead(row as usize, h);
+        joint.left = if left.is_finite() { left } else { Vec3::ZERO };
     }
 }
 
@@ -376,7 +386,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
         Demand {
             kept: words(joints.saturating_add(1).saturating_add(PURSE * self.strands().count())),
             scratch: words(
-                longest.saturating_mul(lanes + bounded::WORDS + bounded::FRAMES * lanes).saturating_add(band),
+                longest.saturating_mul(lanes + bounded::WORDS + bounded::BEGUN * lanes).saturating_add(band),
             ),
             ..Demand::NONE
         }

@@ -3,7 +3,7 @@
 use super::band::Band;
 use super::bounded::Purse;
 use super::frame::{Edge, Spin, bring, gradients, strain};
-use super::joint::Joint;
+use super::joint::{Begun, Joint};
 use super::params::StrandParams;
 use crate::constrain::Bodies;
 use crate::constrain::turn::{Turn, outer, solve};
@@ -43,6 +43,8 @@ pub(super) struct Piece {
     pub(super) turning: [f32; 2],
     /// The number of its strand, if it is the whole of that.
     pub(super) whole: Option<usize>,
+    /// True if some of its points are fixed.
+    pub(super) is_held: bool,
     /// True if nothing holds it, and nothing turns its ends.
     pub(super) is_free: bool,
     /// True if something holds it that stands still, and nothing turns its ends.
@@ -153,15 +155,17 @@ where
         [first, second, twisting].map(soft)
     }
 
-    /// Writes the equations of a piece but for what they ask for, and leaves in its joints the frames of its edges where the method has moved them.
-    pub(super) fn write(&mut self, piece: &Piece, joints: &mut [Joint]) {
+    /// Writes the equations of a piece but for what they ask for, and leaves in its joints, which were `begun` when the sub-step began, the frames of its
+    /// edges where the method has moved them.
+    pub(super) fn write(&mut self, piece: &Piece, joints: &mut [Joint], begun: &[Begun]) {
         let mut last: Option<Edge> = None;
         let driven = self.driven(piece);
         for number in 0..piece.count {
             self.inertia(number);
             let is_held = |edge: usize| edge == 0 && piece.held[0] || edge + 2 == piece.count && piece.held[1];
             let spun = || Spin::by(self.step.h * driven.rate([number, piece.count - 2 - number]));
-            let edge = if number + 1 < piece.count { self.edge(number, joints, is_held(number), spun()) } else { None };
+            let ways = (number + 1 < piece.count).then(|| self.ways(number, joints, begun));
+            let edge = ways.and_then(|ways| self.edge(number, &mut joints[number], ways, (is_held(number), spun())));
             if let (Some(first), Some(second)) = (&last, &edge) {
                 let is_held = [number - 1, number].map(is_held);
                 self.bend(number, [first, second], &joints[number - 1..=number], is_held);
@@ -193,15 +197,27 @@ where
         }
     }
 
-    /// The edge from a point to the next, which something may turn about itself: the pull in it, and what that resists to being moved across.
-    fn edge(&mut self, number: usize, joints: &mut [Joint], is_held: bool, spun: Option<Spin>) -> Option<Edge> {
-        let ends = [number, number + 1].map(|end| self.point(end));
-        let [p, q] = ends.map(|end| end.row);
-        let (x, v, x0, h) = (&*self.bodies.position, &*self.bodies.velocity, self.bodies.before[0], self.step.h);
-        let way = x[q] - x[p];
+    /// The ways from a point to the next: now, less what their velocities make of it in the sub-step, and as that began.
+    fn ways(&self, number: usize, joints: &[Joint], begun: &[Begun]) -> [Vec3; 3] {
+        let next = number + 1;
+        let [p, q] = [number, next].map(|end| self.point(end).row);
+        let (x, v, x0) = (&*self.bodies.position, &*self.bodies.velocity, self.bodies.before[0]);
+        let way = x[q] - x[p] + (joints[next].left - joints[number].left);
+        let before = x0[q] - x0[p] + (begun[next].left - begun[number].left);
+        [way, way - (v[q] - v[p]) * self.step.h, before]
+    }
+
+    /// The edge from a point to the next, which may be held or turned about itself: the pull in it, and what that resists to being moved across.
+    fn edge(
+        &mut self,
+        number: usize,
+        joint: &mut Joint,
+        ways: [Vec3; 3],
+        (is_held, spun): (bool, Option<Spin>),
+    ) -> Option<Edge> {
+        let (ends, h) = ([number, number + 1].map(|end| self.point(end)), self.step.h);
         let embedded = !(ends[0].weight + ends[1].weight > 0.0);
-        let joint = &mut joints[number];
-        let edge = Edge::of(Turn(joint.turn), [way, way - (v[q] - v[p]) * h, x0[q] - x0[p]], embedded, spun)?;
+        let edge = Edge::of(Turn(joint.turn), ways, embedded, spun)?;
         joint.turn = edge.frame[0].0;
         if !is_held && !embedded {
             // Nothing but the material's stiffness holds it.
@@ -297,12 +313,19 @@ where
         let row = row as usize;
         if bodies.inverse_mass[row] > 0.0 {
             let place = bodies.position[row] - bodies.velocity[row] * h;
-            bodies.shift(row, shift(number) - drift - turn.cross(place - middle));
+            let by = shift(number) - drift - turn.cross(place - middle);
+            if piece.is_held {
+                bodies.shift_on(row, by, &mut joints[number].left);
+            } else {
+                bodies.shift(row, by);
+            }
         }
     }
-    for (number, (ends, joint)) in rows.windows(2).zip(joints).enumerate() {
+    for (number, ends) in rows.windows(2).enumerate() {
         let own = (number + 1) * EQUATIONS;
-        let way = bodies.position[ends[1] as usize] - bodies.position[ends[0] as usize];
+        let left = joints[number + 1].left - joints[number].left;
+        let way = bodies.position[ends[1] as usize] - bodies.position[ends[0] as usize] + left;
+        let joint = &mut joints[number];
         let direction = way / length(way);
         if direction.is_finite() {
             let turn = clamp(band.answer(lane, own + TURN), -FARTHEST, FARTHEST);
