@@ -14,7 +14,7 @@ pub(super) struct Joint {
     pub(super) length: f32,
     /// How it is bent and twisted at rest against the edge before.
     pub(super) rest: Vec3,
-    /// How far the point is from where its row says, since rounding has not let it get there \[m\]: nothing where nothing holds its strand.
+    /// How far the point is from where its row says, since rounding has not let it get there \[m\]: nothing where nothing holds its strand, or its ends are turned.
     pub(super) left: Vec3,
 }
 

@@ -51,7 +51,7 @@ use piece::{EQUATIONS, Piece, Step, TURN, Writer, act};
 /// nothing holds are kept to rounding. It gains no energy either, however long its sub-steps, nor does one that hangs from what stands still: what would be too much is taken from how it
 /// deforms, where the strain of what is stiffer than it takes to be brought to its shape in a sub-step counts for no more than that. What swings
 /// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h. Where something holds
-/// it, what rounding leaves of the way of each point is kept, so that it bends far from the origin as near it; what nothing holds loses of how it deforms
+/// it and nothing turns its ends, what rounding leaves of the way of each point is kept, so that it bends far from the origin as near it; any other loses of how it deforms
 /// what goes slower than half a rounding of its coordinates in a sub-step, ε |x| / 2 h. In a periodic room a free strand has to be shorter than half a side.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
@@ -331,13 +331,11 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
 fn follow_velocities(bodies: &mut Bodies<'_>, piece: &Piece, rows: &[u32], joints: &mut [Joint]) {
     let h = bodies.substep.seconds();
     for (&row, joint) in rows.iter().zip(joints) {
-        if !piece.is_held {
-            joint.left = Vec3::ZERO;
-            continue;
+        if piece.is_held {
+            bodies.catch_up(row as usize);
         }
-        bodies.catch_up(row as usize);
         let left = joint.left - bodies.lead(row as usize, h);
-        joint.left = if left.is_finite() { left } else { Vec3::ZERO };
+        joint.left = if piece.keeps_rounding() && left.is_finite() { left } else { Vec3::ZERO };
     }
 }
 

@@ -57,6 +57,12 @@ impl Piece {
         self.held.into_iter().zip(self.turning).any(|(is_held, rate)| is_held && rate != 0.0)
     }
 
+    /// Tells whether what rounding leaves of the ways of its points is kept: something holds it, so that velocities tell where they are to be, and nothing
+    /// turns its ends, which may be as fast as numbers go.
+    pub(super) fn keeps_rounding(&self) -> bool {
+        self.is_held && self.turning == [0.0; 2]
+    }
+
     /// Tells whether nothing gives it energy or takes it but forces and itself.
     pub(super) fn is_left_alone(&self) -> bool {
         self.is_free || self.is_hung
@@ -314,7 +320,7 @@ where
         if bodies.inverse_mass[row] > 0.0 {
             let place = bodies.position[row] - bodies.velocity[row] * h;
             let by = shift(number) - drift - turn.cross(place - middle);
-            if piece.is_held {
+            if piece.keeps_rounding() {
                 bodies.shift_on(row, by, &mut joints[number].left);
             } else {
                 bodies.shift(row, by);
