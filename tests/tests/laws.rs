@@ -45,6 +45,7 @@ mod likeness;
 mod lives;
 mod looks;
 mod mesh_floors;
+mod pegs;
 mod pendulums;
 mod pieces;
 #[path = "rays/main.rs"]

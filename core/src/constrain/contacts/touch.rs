@@ -107,6 +107,13 @@ impl TangentImpulse {
         Self(given)
     }
 
+    /// Adds to what friction has given \[m/s\].
+    pub(in crate::constrain) fn give(&mut self, more: Vec3) {
+        if more.is_finite() {
+            self.0 += more;
+        }
+    }
+
     /// Tells whether friction has something to take, or to give back.
     pub(in crate::constrain) fn acts(&self, touch: &Touch) -> bool {
         touch.has_friction() && (touch.pressed > 0.0 || self.0 != Vec3::ZERO)

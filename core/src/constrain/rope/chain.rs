@@ -29,10 +29,14 @@ impl<'m> Chain<'m> {
         self.rows.len() - usize::from(!self.closed && !self.rows.is_empty())
     }
 
+    /// The number that a particle of it, or its link to the next, has in the whole rope.
+    pub(super) fn number(&self, particle: usize) -> usize {
+        (self.first + particle) % self.particles.max(1)
+    }
+
     /// How long a link is to be \[m\].
     pub(super) fn length(&self, link: usize) -> f32 {
-        let number = (self.first + link) % self.particles.max(1);
-        self.lengths.get(number).or(self.lengths.last()).copied().unwrap_or(0.0)
+        self.lengths.get(self.number(link)).or(self.lengths.last()).copied().unwrap_or(0.0)
     }
 
     /// The numbers of a link's ends among its particles.

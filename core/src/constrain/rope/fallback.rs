@@ -13,6 +13,7 @@ impl Links<'_> {
     pub(super) fn jump(&mut self, bodies: &mut Bodies<'_>) {
         let h = bodies.substep.seconds();
         self.take_up(bodies, h);
+        self.forget_walls();
         let before = self.vigour(bodies, 0.0);
         if !self.meet(h, Way::Now) {
             bodies.report.effort.capped += 1;
@@ -26,6 +27,7 @@ impl Links<'_> {
         if self.chain.tether {
             self.let_go(h);
         }
+        self.note_walls();
         self.hand_back(bodies, h);
         self.calm(bodies, self.vigour(bodies, 0.0), before);
         self.hand_back(bodies, 0.0);

@@ -2,6 +2,7 @@
 
 use super::super::{Bodies, SHIFTED};
 use super::chain::Chain;
+use crate::constrain::walls::{Pace, Wall};
 use crate::index::{Room, between};
 use crate::math::{largest, length, max};
 use crate::memory::take;
@@ -47,6 +48,10 @@ pub(super) struct Links<'m> {
     pub(super) velocity: &'m mut [Vec3],
     /// Velocities put by \[m/s\].
     pub(super) aside: &'m mut [Vec3],
+    /// The walls of all of the rope's particles, or none.
+    pub(super) walls: &'m mut [Wall],
+    /// How much of the sub-step is left behind the pace \[s\].
+    pub(super) left: f32,
 }
 
 /// A link as it lies at the end of a pace.
@@ -65,8 +70,8 @@ pub(super) struct Line {
 }
 
 impl<'m> Links<'m> {
-    /// Those of a chain, in which nothing acts yet, in so many words for each of its particles.
-    pub(super) fn of(chain: Chain<'m>, mut words: &'m mut [u32]) -> Self {
+    /// Those of a chain, in which nothing acts yet, in so many words for each of its particles, which walls may press.
+    pub(super) fn of(chain: Chain<'m>, mut words: &'m mut [u32], walls: &'m mut [Wall]) -> Self {
         let particles = chain.rows.len();
         let mut own = take(&mut words, WORDS * particles);
         own.fill(0);
@@ -77,7 +82,7 @@ impl<'m> Links<'m> {
         let (count, origin, room) = (chain.links(), Vec3::ZERO, None);
         #[rustfmt::skip]
         let nothing = Self {
-            chain, count, is_loaded: false, reach: 0.0, turn: 1.0, share: 1.0, time: 0.0, origin, room, pull, change, upper, border, weight, normal, way, place, velocity, aside,
+            chain, count, is_loaded: false, reach: 0.0, turn: 1.0, share: 1.0, time: 0.0, origin, room, pull, change, upper, border, weight, normal, way, place, velocity, aside, walls, left: 0.0,
         };
         nothing
     }
@@ -86,7 +91,7 @@ impl<'m> Links<'m> {
     pub(super) fn take_up(&mut self, bodies: &Bodies<'_>, time: f32) {
         self.origin = self.chain.rows.first().map_or(Vec3::ZERO, |&row| bodies.position[row as usize]);
         self.room = bodies.near.room().copied();
-        (self.time, self.share, self.is_loaded) = (time, 1.0, false);
+        (self.time, self.share, self.left, self.is_loaded) = (time, 1.0, 0.0, false);
         for (particle, row) in self.chain.members() {
             let place = between(self.room.as_ref(), self.origin, bodies.position[row]);
             self.place[particle] = place - bodies.velocity[row] * time;
@@ -144,6 +149,62 @@ impl<'m> Links<'m> {
             rest,
             weight,
         })
+    }
+
+    /// The wall of a particle that is near one.
+    pub(super) fn wall(&self, particle: usize) -> Option<&Wall> {
+        let wall = if self.walls.is_empty() { None } else { self.walls.get(self.chain.number(particle)) };
+        wall.filter(|wall| wall.is_near())
+    }
+
+    /// Tells whether any of its particles is near a wall.
+    pub(super) fn is_by_walls(&self) -> bool {
+        !self.walls.is_empty() && (0..self.weight.len()).any(|particle| self.wall(particle).is_some())
+    }
+
+    /// What a wall lets pass of a direction in which a particle would go.
+    pub(super) fn pass(&self, particle: usize, along: Vec3) -> Vec3 {
+        self.wall(particle).map_or(along, |wall| wall.pass(along))
+    }
+
+    /// The inverse mass of a particle, with what brakes it along a wall \[1/kg\].
+    pub(super) fn weight_at(&self, particle: usize) -> f32 {
+        self.wall(particle).map_or(self.weight[particle], |wall| self.weight[particle] / wall.heavier())
+    }
+
+    /// Lets the walls of all that are near some look at them in the pace, and at by how much links have made them faster; who is told to goes as fast as
+    /// they say. Tells whether anybody is.
+    pub(super) fn by_walls(&mut self, look: impl Fn(&mut Wall, Pace, Vec3, Vec3) -> Option<Vec3>) -> bool {
+        let mut changed = false;
+        for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
+            let (faster, fast) = (self.sum_at(particle, self.pull) * self.weight[particle], self.velocity[particle]);
+            let (time, left, share, number) = (self.time, self.left, self.share, self.chain.number(particle));
+            let from = self.origin + self.place[particle];
+            let (pace, time) =
+                if time > 0.0 { (Pace::Way { from, time, left, share }, time) } else { (Pace::Settled, 1.0) };
+            let Some(wall) = self.walls.get_mut(number).filter(|wall| wall.is_near()) else { continue };
+            let Some(led) = look(wall, pace, faster / time, fast) else { continue };
+            if self.weight[particle] > 0.0 && led.is_finite() {
+                (self.velocity[particle], changed) = (led, true);
+            }
+        }
+        changed
+    }
+
+    /// Forgets what walls have given in the sub-step, which is gone through again.
+    pub(super) fn forget_walls(&mut self) {
+        self.by_walls(|wall, _, _, _| {
+            wall.forget_paces();
+            None
+        });
+    }
+
+    /// Counts what walls have given in the pace that has been solved.
+    pub(super) fn note_walls(&mut self) {
+        self.by_walls(|wall, pace, faster, _| {
+            wall.note_pace(pace, faster);
+            None
+        });
     }
 
     /// How fast a link's ends go apart \[m/s\].

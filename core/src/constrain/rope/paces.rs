@@ -34,7 +34,8 @@ impl Links<'_> {
             if self.chain.tether {
                 self.let_go(h);
             }
-            if self.has_acted() {
+            self.note_walls();
+            if self.has_acted() || self.is_by_walls() {
                 self.hand_back(bodies, h);
             }
         } else if self.walk_through(bodies) {
@@ -78,11 +79,13 @@ impl Links<'_> {
     /// Gives up where links turn too far in a pace or do not come near their lengths, and where particles swing too far across them.
     fn walk(&mut self, bodies: &Bodies<'_>, paces: u32) -> Walk {
         let share = 1.0 / paces as f32;
-        let time = bodies.substep.seconds() * share;
+        let (h, time) = (bodies.substep.seconds(), bodies.substep.seconds() * share);
+        self.forget_walls();
         self.set_out(bodies, paces as f32);
         let (before, mut hauled) = (self.vigour(bodies, 0.5 * share), 0.0);
         for pace in 1..=paces {
             self.kick(bodies, share);
+            self.left = h - time * pace as f32;
             let met = self.meet(time, Way::First);
             let stiff = self.stiffness();
             if !met || stiff > STIFF {
@@ -91,6 +94,7 @@ impl Links<'_> {
             if self.chain.tether {
                 self.let_go(time);
             }
+            self.note_walls();
             hauled += self.hauled(bodies);
             self.go();
         }

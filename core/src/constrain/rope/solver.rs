@@ -10,7 +10,7 @@ const RIDGE: f32 = 1e-6;
 
 /// Rounds of a solution, at the most.
 const ROUNDS: u32 = 8;
-/// Rounds of one that has to go by the directions that links have, at the most.
+/// Rounds of one that has to go by the directions that links have, or find which walls press and brake, at the most.
 const LAST_ROUNDS: u32 = 24;
 /// The cosine of how far a link may turn in a pace: by 30°.
 const COSINE: f32 = 0.866;
@@ -56,11 +56,16 @@ impl Links<'_> {
     pub(super) fn meet(&mut self, time: f32, along: Way) -> bool {
         let (soft, mut worst, mut begun) = (self.chain.compliance / (time * time), 0.0, 0.0);
         self.pull.fill(0.0);
-        for round in 0..along.rounds() {
+        let by_walls = self.set_out_by_walls();
+        for round in 0..if by_walls { LAST_ROUNDS } else { along.rounds() } {
+            let changed = by_walls && self.judge_walls(round);
             let Some(Round { is_met, lets_go, is_fine, worst: now }) = self.ask_all(soft, along) else { return false };
             worst = now;
             // Rounding of places is nothing to be made good at once.
-            if !(self.reach > 0.0) || round == 0 && is_met && !lets_go && self.share == 1.0 {
+            if !changed && !(self.reach > 0.0) || round == 0 && is_met && !lets_go && self.share == 1.0 && !by_walls {
+                return true;
+            }
+            if by_walls && !changed && !lets_go && (is_met || worst < FINELY * begun) {
                 return true;
             }
             begun = if round == 0 { worst } else { begun };
@@ -73,11 +78,25 @@ impl Links<'_> {
                 return false;
             }
             self.act(time);
-            if !lets_go && (is_fine || round > 0 && worst < FINELY * begun) {
+            if !lets_go && !by_walls && (is_fine || round > 0 && worst < FINELY * begun) {
                 return true;
             }
         }
         worst < NEARLY
+    }
+
+    /// Lets walls that have pressed do so from the beginning; tells whether any is near.
+    fn set_out_by_walls(&mut self) -> bool {
+        let any = self.is_by_walls();
+        if any {
+            self.by_walls(|wall, pace, _, fast| wall.set_out(pace, fast));
+        }
+        any
+    }
+
+    /// Looks before a round which walls press, and in the first ones what friction does; tells whether that is other than in the round before.
+    fn judge_walls(&mut self, round: u32) -> bool {
+        round == 0 || self.by_walls(|wall, pace, faster, _| wall.judge_pace(pace, faster, round < ROUNDS))
     }
 
     /// Asks all links to come to their lengths. None, if one turns too far in the pace.
@@ -128,7 +147,10 @@ impl Links<'_> {
 
     /// Takes out of velocities what makes links longer, or shorter if they push, as far as they are softened by so much.
     pub(super) fn brake(&mut self, soft: f32) {
-        for _ in 0..if self.chain.tether { ROUNDS } else { 1 } {
+        let by_walls = self.set_out_by_walls();
+        let rounds = if self.chain.tether { ROUNDS } else { 1 };
+        for round in 0..if by_walls { LAST_ROUNDS } else { rounds } {
+            let changed = by_walls && self.judge_walls(round);
             let mut is_met = true;
             self.reach = 0.0;
             for link in 0..self.count {
@@ -143,7 +165,7 @@ impl Links<'_> {
                 self.ask(link, slack, line.normal, open, line.weight);
                 is_met &= slack && self.pull[link] == 0.0;
             }
-            if is_met || !self.solve(soft) {
+            if is_met && !changed || by_walls && !changed && !self.chain.tether || !self.solve(soft) {
                 break;
             }
             self.act(1.0);
@@ -162,7 +184,15 @@ impl Links<'_> {
 
     /// Minus what λ of a neighbour changes in a link, through the particle that both have.
     fn coupling(&self, link: usize, neighbour: usize, particle: usize) -> f32 {
-        self.weight[particle] * self.normal[link].dot(self.way[neighbour])
+        let [normal, way] = [self.normal[link], self.way[neighbour]].map(|along| self.pass(particle, along));
+        self.weight_at(particle) * normal.dot(way)
+    }
+
+    /// The inverse masses of a link's ends, as far as walls let these go along it \[1/kg\].
+    fn bearing(&self, link: usize) -> [f32; 2] {
+        let (normal, way) = (self.normal[link], self.way[link]);
+        let share = |end: usize| self.pass(end, normal).dot(self.pass(end, way)) / normal.dot(way);
+        self.chain.ends(link).map(|end| self.weight_at(end) * share(end))
     }
 
     /// What λ of a link changes in itself; one if it is not to act.
@@ -170,7 +200,7 @@ impl Links<'_> {
         if self.normal[link] == Vec3::ZERO {
             return 1.0;
         }
-        let [p, q] = self.chain.ends(link).map(|end| self.weight[end]);
+        let [p, q] = self.bearing(link);
         (p + q) * self.normal[link].dot(self.way[link]) * (1.0 + RIDGE) + soft
     }
 
@@ -179,11 +209,13 @@ impl Links<'_> {
         if self.normal[link] == Vec3::ZERO {
             return 0.0;
         }
-        let (own, weight) = (self.normal[link].dot(self.way[link]), self.weight[link]);
+        let pass = |along: Vec3| self.pass(link, along);
+        let (normal, way, weight) = (pass(self.normal[link]), pass(self.way[link]), self.weight_at(link));
+        let own = normal.dot(way);
         match link.checked_sub(1).filter(|&i| self.normal[i] != Vec3::ZERO) {
             // (n₁·w₁)(n₀·w₀) − (n₁·w₀)(n₀·w₁) = (n₁ × n₀)·(w₁ × w₀).
             Some(i) => {
-                let bend = self.normal[link].cross(self.normal[i]).dot(self.way[link].cross(self.way[i]));
+                let bend = normal.cross(pass(self.normal[i])).dot(way.cross(pass(self.way[i])));
                 weight * ((own * left + weight * bend) / pivot)
             }
             None => weight * own,
@@ -195,7 +227,7 @@ impl Links<'_> {
         if self.normal[link] == Vec3::ZERO {
             return 1.0;
         }
-        let [first, second] = self.chain.ends(link).map(|end| self.weight[end]);
+        let [first, second] = self.bearing(link);
         let own = self.normal[link].dot(self.way[link]);
         let least = if second > 0.0 { 0.5 * second } else { RIDGE * self.count as f32 * first };
         max(own * second + left, least * own)
@@ -249,7 +281,7 @@ impl Links<'_> {
     }
 
     /// The sum of a particle's links, along which they act, by such numbers.
-    fn sum_at(&self, particle: usize, of: &[f32]) -> Vec3 {
+    pub(super) fn sum_at(&self, particle: usize, of: &[f32]) -> Vec3 {
         let mut sum = Vec3::ZERO;
         if particle < self.count {
             sum += self.way[particle] * of[particle];
@@ -263,8 +295,8 @@ impl Links<'_> {
 
     /// By how much the changes of λ move a particle.
     fn movement(&self, particle: usize) -> Option<Vec3> {
-        let weight = self.weight[particle];
-        let by = self.sum_at(particle, self.change) * weight;
+        let weight = self.weight_at(particle);
+        let by = self.pass(particle, self.sum_at(particle, self.change)) * weight;
         (weight > 0.0 && by.is_finite()).then_some(by)
     }
 
@@ -311,6 +343,7 @@ impl Links<'_> {
 
     /// Takes out of velocities what makes links longer or shorter, but for those that are slack.
     pub(super) fn turn_only(&mut self) {
+        let walls = core::mem::take(&mut self.walls);
         self.pull.fill(0.0);
         (self.reach, self.time) = (0.0, 0.0);
         for link in 0..self.count {
@@ -326,5 +359,6 @@ impl Links<'_> {
             self.act(1.0);
         }
         self.pull.fill(0.0);
+        self.walls = walls;
     }
 }

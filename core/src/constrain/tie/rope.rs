@@ -113,7 +113,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
         let loads = [0, 1].map(|end| self.load(bodies, end, share.kept.fixed, back));
         let mut rest = &mut *share.scratch;
         if loads.iter().all(Option::is_none) {
-            then(&self.rope, bodies, &mut share_of(rest, share.capacity));
+            then(&self.rope, bodies, &mut share_of([share.step, rest], share.capacity));
             return;
         }
         let masses: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, bodies.len()));
@@ -127,7 +127,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
             masses[*row] += heavier;
             inverse[*row] = 1.0 / masses[*row];
         }
-        then(&self.rope, &mut bodies.weighing(masses, inverse), &mut share_of(rest, share.capacity));
+        then(&self.rope, &mut bodies.weighing(masses, inverse), &mut share_of([share.step, rest], share.capacity));
         for Load { end, row, heavier, grip, was } in loads.into_iter().flatten() {
             let gained = [bodies.position[row] - was[0], bodies.velocity[row] - was[1]].map(|by| by * heavier);
             let tie = self.ties(share.kept.fixed).find(|(number, ..)| *number == end);
@@ -148,8 +148,8 @@ type Phase<P, L> = fn(&Rope<P, L>, &mut Bodies<'_>, &mut Share<'_>);
 type TiePhase<T, W> = fn(&Tie<T, W>, &mut Bodies<'_>, &[u32]) -> Option<()>;
 
 /// A share of which nothing is kept.
-fn share_of(scratch: &mut [u32], capacity: usize) -> Share<'_> {
-    Share { kept: Kept::default(), step: &mut [], scratch, capacity }
+fn share_of<'s>([step, scratch]: [&'s mut [u32]; 2], capacity: usize) -> Share<'s> {
+    Share { kept: Kept::default(), step, scratch, capacity }
 }
 
 /// A tied end of a rope while that is solved.

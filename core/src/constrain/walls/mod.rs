@@ -3,12 +3,14 @@
 
 mod as_one;
 mod follow;
+mod glide;
 mod settle;
 mod solve;
 mod tell;
 
 pub(super) use as_one::{Motion, Whole};
 pub(super) use follow::follow;
+pub(super) use glide::Pace;
 pub(super) use settle::{report, settle};
 pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, meet};
 
@@ -47,7 +49,8 @@ const STICKS: u32 = 3;
 pub(super) struct Wall {
     row: u32,
     state: u32,
-    /// 1 if its particle has yet to be brought to where the wall wants it; while walls are gathered, its state in the sub-step before.
+    /// 1 if its particle has yet to be brought to where the wall wants it; while walls are gathered, its state in the sub-step
+    /// before; as velocities are settled, 1 if its particle touches it.
     fresh: u32,
     normal: Vec3,
     /// How far along the normal the particle is to be from the origin at the sub-step's end \[m\], at the least.
@@ -61,7 +64,8 @@ pub(super) struct Wall {
     pushed: Vec3,
     /// How far off all scenery is, at the least \[m\].
     clear: f32,
-    /// The part that it takes of the forces that are left \[kg m\], and what it brakes by for each metre that its particle slides \[kg\]. Where it presses
+    /// The part that it takes of the forces that are left \[kg m\], and what it brakes by for each metre that its particle slides \[kg\]. Where what it
+    /// presses is solved by speeds: how fast that would go by itself \[m/s\], and how much heavier friction makes it, in its own masses. Where it presses
     /// what moves as one: what it has given its particle, and along `beside` \[kg m\], in the end as impulses \[kg m/s\].
     held: Vec3,
     brake: f32,
@@ -74,6 +78,8 @@ pub(super) struct Wall {
     beyond: f32,
     /// 1 if any face that is near moves.
     moves: u32,
+    /// How much heavier friction has made what is solved by speeds, as it was pressed last.
+    last: f32,
 }
 
 /// The words of the wall of a particle.
@@ -90,7 +96,7 @@ pub(super) fn of(step: &mut [u32], count: usize) -> &mut [Wall] {
 pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>) {
     let Substep { number, count, .. } = bodies.substep;
     if number == 0 {
-        walls.iter_mut().for_each(|wall| wall.clear = 0.0);
+        walls.iter_mut().for_each(|wall| (wall.clear, wall.last) = (0.0, 0.0));
     }
     let mut around = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
     let (mut size, mut farthest) = (0.0, 0.0);

@@ -10,7 +10,9 @@ use crate::math::aside;
 pub(in crate::constrain) fn settle(walls: &mut [Wall], bodies: &mut Bodies<'_>) {
     for wall in walls.iter_mut().filter(|wall| wall.state != NONE) {
         let (row, normal) = (wall.row as usize, wall.normal);
-        if !(wall.touch.pressed() > 0.0 || wall.touches(bodies)) {
+        let meets = wall.touch.pressed() > 0.0 || wall.touches(bodies);
+        wall.fresh = u32::from(meets);
+        if !meets {
             continue;
         }
         let wanted = bounce(&bodies.substep, wall.touch.elasticity, wall.ends(bodies));

@@ -1,0 +1,125 @@
+//! Walls of what is solved by speeds, link by link: how particles glide along them.
+
+use super::{NEAR, NONE, NOTICED, SLIDES, Wall};
+use crate::constrain::contacts::TangentImpulse;
+use crate::math::{aside, length, max, min};
+use glam::Vec3;
+
+/// The change of what friction gives that is small enough, as a share.
+const SETTLED: f32 = 0.01;
+/// How many times as heavy as it is a particle is that friction holds.
+const HELD: f32 = 1e3;
+
+/// What is solved by speeds, as a particle begins it.
+#[derive(Clone, Copy)]
+pub(in crate::constrain) enum Pace {
+    /// A part of a sub-step: where the particle is, how long it takes and what is left of the sub-step behind it \[s\], and what share of that it is.
+    Way { from: Vec3, time: f32, left: f32, share: f32 },
+    /// How fast it goes at a sub-step's end.
+    Settled,
+}
+
+impl Wall {
+    /// Begins a pace in which its particle would go so fast by itself; tells how fast it goes if it presses that, as it has before.
+    pub(in crate::constrain) fn set_out(&mut self, pace: Pace, fast: Vec3) -> Option<Vec3> {
+        if self.state == NONE {
+            return None;
+        }
+        (self.held, self.brake) = (fast, if matches!(pace, Pace::Way { .. }) { self.last } else { 0.0 });
+        // Who has got off it is not drawn back to it.
+        let presses = self.presses() && self.least(pace) >= fast.dot(self.normal);
+        self.state = if presses { SLIDES } else { NEAR };
+        presses.then(|| self.led(pace, fast))
+    }
+
+    /// Looks whether it presses its particle, which others have made faster by so much, and what friction does to that; tells how fast it goes where this
+    /// is other than before. Friction may be taken for known (`rubs`).
+    pub(in crate::constrain) fn judge_pace(&mut self, pace: Pace, faster: Vec3, rubs: bool) -> Option<Vec3> {
+        let driven = self.held + faster;
+        let load = self.least(pace) - driven.dot(self.normal);
+        if self.presses() && load < self.spare(pace) {
+            (self.state, self.brake, self.last) = (NEAR, 0.0, 0.0);
+            return Some(driven);
+        }
+        let changed =
+            if self.presses() { rubs && self.grip(max(load, 0.0), driven) } else { self.is_met_in(pace, load) };
+        if changed {
+            self.state = SLIDES;
+        }
+        changed.then(|| self.led(pace, driven))
+    }
+
+    /// Counts as pressed what it has given its particle in a pace, and as taken what friction has.
+    pub(in crate::constrain) fn note_pace(&mut self, pace: Pace, faster: Vec3) {
+        if self.presses() {
+            let driven = self.held + faster;
+            let load = max(self.least(pace) - driven.dot(self.normal), 0.0);
+            self.touch.begin(self.touch.pressed() + load);
+            self.last = self.brake;
+            self.tangent.give(self.slip(driven) * -self.brake);
+        }
+    }
+
+    /// Forgets what it has pressed in a sub-step that is gone through again.
+    pub(in crate::constrain) fn forget_paces(&mut self) {
+        self.touch.begin(0.0);
+        self.tangent = TangentImpulse::of(Vec3::ZERO);
+    }
+
+    /// What it lets pass of a direction.
+    pub(in crate::constrain) fn pass(&self, along: Vec3) -> Vec3 {
+        if self.presses() { aside(along, self.normal) } else { along }
+    }
+
+    /// How many times as heavy its particle is along it as by itself.
+    pub(in crate::constrain) fn heavier(&self) -> f32 {
+        if self.presses() { 1.0 + self.brake } else { 1.0 }
+    }
+
+    /// The speed along the normal that its particle has to have in a pace at the least \[m/s\]. Who is behind it gets out of it in the whole of the
+    /// sub-step.
+    fn least(&self, pace: Pace) -> f32 {
+        let Pace::Way { from, time, left, share } = pace else { return self.held.dot(self.normal) };
+        let gap = self.offset - from.dot(self.normal) - self.velocity.dot(self.normal) * left;
+        gap / time * if gap > 0.0 { share } else { 1.0 }
+    }
+
+    /// How hard it may press at the least \[m/s\]: what it has pressed in a sub-step it may take back as that ends.
+    fn spare(&self, pace: Pace) -> f32 {
+        if matches!(pace, Pace::Settled) { -max(self.touch.pressed(), 0.0) } else { 0.0 }
+    }
+
+    /// Tells whether its particle would get so far into it that it has to press that, or touches it and would go into it.
+    fn is_met_in(&self, pace: Pace, load: f32) -> bool {
+        match pace {
+            Pace::Way { time, .. } => load * time > NOTICED * self.slack,
+            Pace::Settled => self.fresh == 1 && load > 0.0,
+        }
+    }
+
+    /// How fast a particle slips along it that would go so fast without it.
+    fn slip(&self, driven: Vec3) -> Vec3 {
+        aside(driven - self.velocity, self.normal) / (1.0 + self.brake)
+    }
+
+    /// How fast a particle goes that it presses, and that would go so fast without it.
+    fn led(&self, pace: Pace, driven: Vec3) -> Vec3 {
+        aside(self.velocity, self.normal) + self.slip(driven) + self.normal * self.least(pace)
+    }
+
+    /// Makes its particle so much heavier that what slips is braked by what friction can by what presses: that never drives it, whatever presses. Tells
+    /// whether that is other than before.
+    fn grip(&mut self, load: f32, driven: Vec3) -> bool {
+        let ([resting, sliding], fast) = (self.touch.friction(), length(self.slip(driven)));
+        let brake = match resting * load {
+            most if most > 0.0 && most >= HELD * fast => HELD,
+            _ if fast > 0.0 => min(sliding * load / fast, HELD),
+            _ => 0.0,
+        };
+        let changed = (brake - self.brake).abs() > SETTLED * brake;
+        if changed {
+            self.brake = brake;
+        }
+        changed
+    }
+}
