@@ -68,6 +68,7 @@ mod sleep;
 mod soft_bodies;
 mod sound;
 mod springs;
+mod static_friction;
 mod still;
 mod storage;
 mod straight_paths;

@@ -126,7 +126,7 @@ impl Body {
 
     /// Tells whether it is pushed by one that touches it, and has lain there (1) since before it fell asleep or not.
     #[inline(always)]
-    pub(super) fn gives(&self, rested: u16) -> bool {
+    pub(super) fn gives(&self, rested: u8) -> bool {
         self.inverse_mass > 0.0 && (rested == 0 || self.asleep == 0)
     }
 

@@ -55,11 +55,11 @@ pub(super) struct Manifold {
     /// Its place in the order.
     pub(super) colour: u32,
     /// 1 if they have touched since before one of them fell asleep, which is fixed for the other now.
-    pub(super) rested: u16,
+    pub(super) rested: u8,
+    /// 1 if one presses on the other.
+    pub(super) presses: u8,
     /// Which of the pieces of each it is that may touch, by their numbers.
     pub(super) pieces: [u8; 2],
-    /// 1 if one presses on the other.
-    pub(super) presses: u32,
     /// The force of the first on the second, and its torque about the first's centre, when one of them fell asleep \[N, N m\].
     pub(super) loads: [Vec3; 2],
     /// The normal in the world.
@@ -68,6 +68,8 @@ pub(super) struct Manifold {
     pub(super) normal: Vec3,
     pub(super) elasticity: f32,
     pub(super) friction: [f32; 2],
+    /// The coefficient of friction that is in force: of what rests, or of what slides.
+    pub(super) grip: f32,
     pub(super) points: [Point; POINTS],
 }
 
@@ -76,8 +78,8 @@ impl Manifold {
     pub(super) fn of((bodies, pieces): Key, mixed: Mixed) -> Self {
         let Mixed { elasticity, friction } = mixed;
         let elasticity = min(max(elasticity, 0.0), 1.0);
-        let friction = [friction.static_, friction.kinetic];
-        Self { bodies, pieces, elasticity, friction, ..bytemuck::Zeroable::zeroed() }
+        let friction = [max(friction.static_, friction.kinetic), friction.kinetic];
+        Self { bodies, pieces, elasticity, friction, grip: friction[0], ..bytemuck::Zeroable::zeroed() }
     }
 
     /// Who it is of.

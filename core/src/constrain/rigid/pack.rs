@@ -68,6 +68,8 @@ pub(super) struct Pack {
     pub(super) normal: [Row; 3],
     pub(super) along: [[Row; 3]; 2],
     pub(super) friction: [Row; 2],
+    /// The coefficient of friction that is in force for each: all its points rest, or slide, together.
+    pub(super) grip: Row,
     /// How their bodies turn by an angular impulse.
     pub(super) inverse: [Inverse; 2],
     /// The normal in the first's frame.
@@ -191,7 +193,8 @@ impl Pack {
         for (lane, &axis) in axes.iter().enumerate().take(self.len()) {
             let Some(manifold) = manifolds.get_mut(self.manifolds[lane]) else { continue };
             manifold.axis = vector(axis);
-            manifold.presses = presses >> lane & 1;
+            manifold.presses = (presses >> lane & 1) as u8;
+            manifold.grip = self.grip[lane];
         }
     }
 }
@@ -223,10 +226,10 @@ impl<F: Eight> Kept<F> {
     }
 }
 
-/// The normals of all in the first's frame, their elasticities, and their two coefficients of friction.
+/// The normals of all in the first's frame, their elasticities, their two coefficients of friction, and which of them is in force.
 #[inline(always)]
-pub(super) fn surfaces<F: Eight>(like: F, all: &[&Manifold; LANES]) -> (Vectors<F>, F, [F; 2]) {
+pub(super) fn surfaces<F: Eight>(like: F, all: &[&Manifold; LANES]) -> (Vectors<F>, F, [F; 3]) {
     let first = offset_of!(Manifold, normal) / 4;
-    let ([x, y, z, elasticity], [sticks, slides, _, _]) = (fours(like, all, first), fours(like, all, first + 4));
-    (Vectors([x, y, z]), elasticity, [sticks, slides])
+    let ([x, y, z, elasticity], [sticks, slides, grip, _]) = (fours(like, all, first), fours(like, all, first + 4));
+    (Vectors([x, y, z]), elasticity, [sticks, slides, grip])
 }

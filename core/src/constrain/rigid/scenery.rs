@@ -191,25 +191,13 @@ impl Visit<'_> {
             return;
         }
         let near = |slot: &&Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
-        let before = self.before.iter().find(near).map_or(&[][..], Manifold::points);
-        if slot.count >= 4 && matches!(self.form, Form::Piece(_)) && !make_room(slot, self.body, [on, over]) {
-            return;
+        let known = self.before.iter().find(near);
+        let before = known.map_or(&[][..], Manifold::points);
+        if let Some(known) = known.filter(|known| slot.count == 0 && known.friction == slot.friction) {
+            slot.grip = known.grip;
         }
-        if slot.count >= 4 {
-            // Of more than four on a face the deepest count.
-            let (body, mut least) = (self.body, (0, f32::NEG_INFINITY));
-            for (i, other) in slot.points.iter().enumerate() {
-                let gap = dot(normal, body.point(other.places[1]) - other.places[0]);
-                if gap > least.1 {
-                    least = (i, gap);
-                }
-            }
-            if !(gap < least.1) {
-                return;
-            }
-            let last = slot.points[3];
-            slot.points[least.0] = last;
-            slot.count = 3;
+        if slot.count as usize >= POINTS && !make_room(slot, self.body, [on, over]) {
+            return;
         }
         slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
         if let Some(point) = slot.points.get_mut(slot.count as usize - 1) {
@@ -265,8 +253,8 @@ impl Visit<'_> {
     }
 }
 
-/// Leaves out one of four points on a face for another spot; tells whether it is not that which holds the body least. What stands on the feet of
-/// several pieces needs those that are farthest from each other.
+/// Leaves out one of four points on a face for another spot; tells whether it is not that which holds the body least. What has more corners or
+/// feet there stands on those that are farthest from each other, and rocks on the deepest.
 #[inline(never)]
 fn make_room(slot: &mut Manifold, body: &Body, spot: Spot) -> bool {
     let mut spots = Spots::new();

@@ -191,17 +191,17 @@ impl<F: Eight> Pair<F> {
     fn begin(&self, pack: &mut Pack, all: &[&Manifold; crate::lanes::LANES], span: Span) {
         let [a, b] = &self.poses;
         let like = a.motion.inverse_mass;
-        let (within, elasticity, [sticks, slides]) = surfaces(like, all);
+        let (within, elasticity, [sticks, slides, grip]) = surfaces(like, all);
         let normal = a.turned(within);
         let u = across(normal);
         let along = [u, normal.cross(u)];
         (pack.within, pack.normal) = (within.saved(), normal.saved());
         pack.along = [along[0].saved(), along[1].saved()];
-        pack.friction = [saved(sticks), saved(slides)];
+        (pack.friction, pack.grip) = ([saved(sticks), saved(slides)], saved(grip));
         pack.inverse = [a.motion.inverse(), b.motion.inverse()];
         // What forces make of the speed of either in a sub-step.
         let driven = max(max(like.all(0.0), a.gained()), b.gained());
-        let holds = like.all(HOLDS) * slides;
+        let holds = like.all(HOLDS) * grip;
         for i in pack.numbers() {
             let kept = self.let_slide(Kept::of(like, all, i), normal, holds);
             let stance = self.stance(normal, kept.places);

@@ -5,6 +5,10 @@ use super::moving::{Moves, Moving};
 use super::pack::{Pack, Spots};
 use crate::lanes::{Eight, Vectors, load, mask_of, max, min, negated, not, saved};
 
+/// The slip that friction leaves from which on a point is no longer held, as a multiple of the change of speed that is too small to go over their
+/// neighbours for: what passes leave over is less and does not add up over sub-steps, as what slides does.
+const SLIPS: f32 = 25.0;
+
 /// One point of each two.
 #[derive(Clone, Copy)]
 struct Spot<F> {
@@ -51,7 +55,9 @@ pub(super) struct Touch<F> {
     due: F,
     normal: Vectors<F>,
     along: [Vectors<F>; 2],
-    friction: [F; 2],
+    /// The coefficient of friction in force, and where it holds some point that presses, and does not.
+    grip: F,
+    holds: [F; 2],
     /// Where some change was large enough to go over their neighbours again.
     is_changed: F,
 }
@@ -68,14 +74,16 @@ impl<F: Eight> Touch<F> {
             due: mask_of(like, due),
             normal: Vectors::load(like, &pack.normal),
             along: [Vectors::load(like, &pack.along[0]), Vectors::load(like, &pack.along[1])],
-            friction: [load(like, &pack.friction[0]), load(like, &pack.friction[1])],
+            grip: load(like, &pack.grip),
+            holds: [like.all(0.0); 2],
             is_changed: like.all(0.0),
         })
     }
 
     /// Writes down what has been done to those of a pack that are due, at a tick of the clock.
     #[inline(always)]
-    pub(super) fn end(self, pack: &mut Pack, moving: &mut [Moving], tick: f32) {
+    pub(super) fn end(mut self, pack: &mut Pack, moving: &mut [Moving], tick: f32) {
+        self.grasp(pack);
         let (due, tick) = (self.due.to_bitmask(), self.due.all(tick));
         let [mut a, mut b] = self.moves;
         if !self.on_scenery {
@@ -85,6 +93,19 @@ impl<F: Eight> Touch<F> {
         b.note(self.is_changed, tick);
         b.tell(moving, &pack.bodies[1], pack.gives[1] & due);
         pack.seen = saved(self.due.select(tick, load(tick, &pack.seen)));
+    }
+
+    /// Says by which friction those of a pack are held from now on. One point of several takes the slip of all, more than its share, until the
+    /// others have had their turn: so they slide where none is held when all have been gone over before, and rest where one is.
+    #[inline(always)]
+    fn grasp(&mut self, pack: &mut Pack) {
+        let [rests, slides] = [load(self.grip, &pack.friction[0]), load(self.grip, &pack.friction[1])];
+        let [some, others] = self.holds;
+        let again = not_zero(load(self.grip, &pack.seen)).select(slides, self.grip);
+        let grip = (others & not(some)).select(again, rests);
+        let is_other = self.due & not_zero(grip - self.grip);
+        self.is_changed = self.is_changed | is_other;
+        pack.grip = saved(is_other.select(grip, self.grip));
     }
 
     /// How the second moves there as seen from the first \[m/s\].
@@ -107,7 +128,7 @@ impl<F: Eight> Touch<F> {
     /// once, whatever the order of points.
     #[inline(always)]
     pub(super) fn press_evenly(&mut self, pack: &mut Pack) {
-        let like = self.friction[0];
+        let like = self.grip;
         let (zero, one) = (like.all(0.0), like.all(1.0));
         let (mut lack, mut least, mut number, mut little) = (zero, like.all(f32::INFINITY), zero, zero);
         let mut levers = [Vectors([zero; 3]); 2];
@@ -150,7 +171,7 @@ impl<F: Eight> Touch<F> {
     /// what they lag behind the scenery and where they were held, what Coulomb's friction can.
     #[inline(always)]
     pub(super) fn press(&mut self, pack: &mut Pack, i: usize) {
-        let like = self.friction[0];
+        let like = self.grip;
         let (zero, one) = (like.all(0.0), like.all(1.0));
         let Spot { is_there, arms, wanted, mass, answer, lag, rub, little, pressed, held } = Spot::of(like, pack, i);
         let slip = self.slip(arms);
@@ -161,11 +182,13 @@ impl<F: Eight> Touch<F> {
         let (square, yields) = (u * u + v * v, rub[0] * (u * u) + rub[1] * (u * v) + rub[2] * (v * v));
         let rubs = (square / yields) & square.simd_gt(zero);
         let [x, y] = [held[0] - u * rubs, held[1] - v * rubs];
-        let (square, sticks) = (x * x + y * y, self.friction[0] * new);
-        let is_held = square.simd_le(sticks * sticks);
-        let size = is_held.select(one, square.sqrt());
-        let share = is_held.select(one, min(self.friction[1] * new, size) / size);
+        let presses = new.simd_gt(zero);
+        let (square, most) = (x * x + y * y, (self.grip * new) & presses);
+        let size = square.sqrt();
+        let share = size.simd_gt(most).select(most / size, one);
         let (x, y) = (x * share, y * share);
+        let (presses, is_held) = (presses & is_there, not((size - most).simd_gt(little * rubs * like.all(SLIPS))));
+        self.holds = [self.holds[0] | (presses & is_held), self.holds[1] | (presses & not(is_held))];
         let change = self.normal * impulse + self.along[0] * (x - held[0]) + self.along[1] * (y - held[1]);
         // What is no number is left out.
         let far = change.dot(change);

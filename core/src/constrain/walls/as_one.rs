@@ -4,7 +4,7 @@ use super::{NOBODY, Wall};
 use crate::constrain::Bodies;
 use crate::constrain::bodies::Change;
 use crate::constrain::contacts::bounce;
-use crate::math::{aside, dot, length, max, min};
+use crate::math::{aside, dot, length, max};
 use glam::{Mat3, Vec3};
 
 /// Times that all walls are gone over, at the most.
@@ -13,6 +13,9 @@ const ROUNDS: u32 = 64;
 const SETTLED: f32 = 1e-3;
 /// The square of the sine of the least angle between a push and the arm at which it turns what is fixed at a place: others are borne by that.
 const LEAST: f32 = 1e-3;
+/// So many times the friction of what rests a particle asks for that is no longer held. What rounds leave over is less and does not add up over
+/// sub-steps, as what slides does.
+const SLIPS: f32 = 1.25;
 /// Times that the share of elasticity by which walls would give energy is halved.
 const HALVINGS: u32 = 6;
 
@@ -33,6 +36,15 @@ pub(in crate::constrain) struct Whole {
 pub(in crate::constrain) struct Motion {
     pub(in crate::constrain) along: Vec3,
     pub(in crate::constrain) turning: Vec3,
+}
+
+/// The friction that particles have at walls: of what slides, or of what rests; and whether a round has found that it holds some, and does not hold
+/// others.
+#[derive(Clone, Copy)]
+struct Rubs {
+    slides: bool,
+    holds: bool,
+    slips: bool,
 }
 
 impl Motion {
@@ -85,10 +97,16 @@ impl Whole {
     }
 
     /// Goes over walls until what they change is small against what they have changed to begin with; tells whether it has become so.
-    fn go_over(walls: &mut [Wall], counts: fn(&Wall) -> bool, mut change: impl FnMut(&mut Wall) -> f32) -> bool {
+    fn go_over(
+        walls: &mut [Wall],
+        counts: fn(&Wall) -> bool,
+        rubs: &mut Rubs,
+        mut change: impl FnMut(&mut Wall, &mut Rubs) -> f32,
+    ) -> bool {
         let mut enough = 0.0;
         for round in 0..ROUNDS {
-            let changes = walls.iter_mut().filter(|wall| counts(wall)).map(&mut change);
+            (rubs.holds, rubs.slips) = (false, false);
+            let changes = walls.iter_mut().filter(|wall| counts(wall)).map(|wall| change(wall, rubs));
             let most = changes.fold(0.0, max);
             enough = if round == 0 { most * SETTLED } else { enough };
             if !(most > enough) {
@@ -96,6 +114,19 @@ impl Whole {
             }
         }
         false
+    }
+
+    /// The same by the friction of what rests, and if that holds nobody, of what slides: one wall of several takes the slip of all, more than its
+    /// share, until the others have had their turn, so that which it is shows in the end.
+    fn go_over_all(
+        walls: &mut [Wall],
+        counts: fn(&Wall) -> bool,
+        mut change: impl FnMut(&mut Wall, &mut Rubs) -> f32,
+    ) -> bool {
+        let mut rubs = Rubs { slides: false, holds: false, slips: false };
+        let is_settled = Self::go_over(walls, counts, &mut rubs, &mut change);
+        rubs.slides = rubs.slips && !rubs.holds;
+        if rubs.slides { Self::go_over(walls, counts, &mut rubs, change) } else { is_settled }
     }
 
     /// Pushes it out of walls by impulses at its particles, with friction, which holds particles where they touch if it can. Particles are moved by
@@ -107,7 +138,8 @@ impl Whole {
         for wall in &mut *walls {
             (wall.held, wall.brake) = (Vec3::ZERO, 0.0);
         }
-        let is_settled = Self::go_over(walls, Wall::is_near, |wall| wall.push(self, bodies, &mut moved));
+        let is_settled =
+            Self::go_over_all(walls, Wall::is_near, |wall, rubs| wall.push(self, bodies, &mut moved, rubs));
         bodies.report.effort.capped += u64::from(!is_settled);
         for wall in walls.iter_mut().filter(|wall| wall.row != NOBODY) {
             // It is that much nearer to what has been searched.
@@ -142,8 +174,9 @@ impl Whole {
             wall.pushed = bodies.velocity[wall.row as usize] - self.changes(wall, bodies, &all);
         }
         let mut bounces = |walls: &mut [Wall], bodies: &mut Bodies<'_>, share: f32| {
-            let is_settled =
-                Self::go_over(walls, Wall::is_touched, |wall| wall.bounce(self, bodies, &mut faster, share));
+            let is_settled = Self::go_over_all(walls, Wall::is_touched, |wall, rubs| {
+                wall.bounce(self, bodies, &mut faster, (share, rubs))
+            });
             (is_settled, gains(&faster) && walls.iter().filter(|wall| wall.touch.is_on()).all(Wall::stands))
         };
         let (mut is_settled, is_too_much) = bounces(walls, bodies, 1.0);
@@ -191,7 +224,7 @@ impl Wall {
     }
 
     /// Pushes its particle out and back to where it touches; tells how far.
-    fn push(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, moved: &mut Motion) -> f32 {
+    fn push(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, moved: &mut Motion, rubs: &mut Rubs) -> f32 {
         let (row, normal) = (self.row as usize, self.normal);
         let at = |bodies: &Bodies<'_>, moved: &Motion| bodies.position[row] + whole.moves(bodies, row, moved);
         let missing = self.offset - at(bodies, moved).dot(normal);
@@ -201,11 +234,17 @@ impl Wall {
             far = max(self.give_beside(whole, bodies, moved, missing, Change::Place), far);
         }
         let slip = aside(at(bodies, moved) - self.stuck, normal);
-        max(self.rub(whole, bodies, moved, slip, Change::Place), far)
+        max(self.rub(whole, bodies, moved, slip, (Change::Place, rubs)), far)
     }
 
     /// Brings its particle to leave it as fast as a share of its elasticity wants, with what friction holds; tells by how much it is faster.
-    fn bounce(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, faster: &mut Motion, share: f32) -> f32 {
+    fn bounce(
+        &mut self,
+        whole: &Whole,
+        bodies: &mut Bodies<'_>,
+        faster: &mut Motion,
+        (share, rubs): (f32, &mut Rubs),
+    ) -> f32 {
         let (row, normal, beside) = (self.row as usize, self.normal, self.beside);
         let elasticity = share * self.touch.elasticity;
         let leaves = |bodies: &Bodies<'_>, faster: &Motion, surface: Vec3| {
@@ -222,7 +261,7 @@ impl Wall {
             far = max(self.give_beside(whole, bodies, faster, missing, Change::Velocity), far);
         }
         let slip = aside(leaves(bodies, faster, self.velocity), normal);
-        max(self.rub(whole, bodies, faster, slip, Change::Velocity), far)
+        max(self.rub(whole, bodies, faster, slip, (Change::Velocity, rubs)), far)
     }
 
     /// Gives its particle what is missing along the normal, and takes back no more than it has given; tells how far that moves it.
@@ -251,7 +290,14 @@ impl Wall {
     }
 
     /// Takes a slip, as far as friction can by what presses, and gives back what was more than that.
-    fn rub(&mut self, whole: &Whole, bodies: &mut Bodies<'_>, motion: &mut Motion, slip: Vec3, what: Change) -> f32 {
+    fn rub(
+        &mut self,
+        whole: &Whole,
+        bodies: &mut Bodies<'_>,
+        motion: &mut Motion,
+        slip: Vec3,
+        (what, rubs): (Change, &mut Rubs),
+    ) -> f32 {
         let (row, normal) = (self.row as usize, self.normal);
         let (pressed, [resting, sliding]) = (self.held.dot(normal), self.touch.friction());
         let (held, speed) = (aside(self.held, normal), length(slip));
@@ -262,7 +308,10 @@ impl Wall {
         let weight = whole.gives_way(bodies, row, direction);
         let wanted = if weight > 0.0 { held - direction * (speed / weight) } else { held };
         let far = length(wanted);
-        let given = if far <= resting * pressed { wanted } else { wanted * min(sliding * pressed / far, 1.0) };
+        let most = if rubs.slides { sliding } else { max(resting, sliding) } * pressed;
+        let slips = resting > sliding && far > SLIPS * most;
+        (rubs.holds, rubs.slips) = (rubs.holds || !slips && most > 0.0, rubs.slips || slips);
+        let given = if far <= most { wanted } else { wanted * (most / far) };
         let by = given - held;
         if !by.is_finite() {
             return 0.0;
