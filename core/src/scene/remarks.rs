@@ -3,7 +3,7 @@
 use super::{Boxes, Cloth, Cord, Growth, Response, Run, SceneFile, SoftBody, Tuft};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
-use crate::force::Friction;
+use crate::force::{ForceKind, Friction};
 use crate::reap::ReaperKind;
 use crate::shape::Shape;
 use alloc::format;
@@ -47,6 +47,7 @@ impl SceneFile {
                 odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed),
             );
             add(format_args!("emitters[{i}].spread"), odd_spread(emitter.spread));
+            add(format_args!("emitters[{i}].lifetime"), odd_lifetime(emitter.lifetime));
             let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
             let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
             add(format_args!("emitters[{i}].stop"), ended.map(nothing));
@@ -60,6 +61,7 @@ impl SceneFile {
             add(format_args!("materials[{i}].contact.friction.static"), odd_friction(friction));
         }
         self.add_idle(&mut add);
+        self.add_unread(&mut add);
         remarks
     }
 
@@ -168,6 +170,31 @@ impl SceneFile {
 }
 
 impl SceneFile {
+    /// Remarks on the first drag and the first charge of a list that no force of the scene looks at.
+    fn add_unread(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        let mut look = |list: &str, name: &str, (forces, does): (&str, &str), values: &mut dyn Iterator<Item = f32>| {
+            let first = values.enumerate().find(|(_, value)| *value != 0.0);
+            let Some((i, value)) = first else { return };
+            let nothing =
+                format!("{value} {does} nobody, for no force looks at it; add {forces} to the forces, or take 0");
+            add(format_args!("{list}[{i}].{name}"), Some(nothing));
+        };
+        if !self.forces.iter().any(|force| matches!(force, ForceKind::Drag(_) | ForceKind::Wind(_))) {
+            let forces = ("drag or wind", "brakes");
+            look("particles", "drag", forces, &mut self.particles.iter().map(|particle| particle.drag));
+            look("emitters", "drag", forces, &mut self.emitters.iter().map(|emitter| emitter.drag.mean));
+            look("boxes", "drag", forces, &mut self.boxes.iter().map(|boxes| boxes.drag));
+        }
+        let pulls = |force: &ForceKind| {
+            matches!(force, ForceKind::Coulomb(_) | ForceKind::PowerLaw(_) | ForceKind::LennardJones(_))
+        };
+        if !self.forces.iter().any(pulls) {
+            let forces = ("coulomb", "pulls");
+            look("particles", "charge", forces, &mut self.particles.iter().map(|particle| particle.charge));
+            look("emitters", "charge", forces, &mut self.emitters.iter().map(|emitter| emitter.charge.mean));
+        }
+    }
+
     /// Tells whether strands turn an end, root or tip, that is neither held nor clamped in any of them: one of the two particles there, of the file's
     /// own, is not fixed.
     fn is_idly_turned(&self, strands: &Strands<Vec<u32>, Vec<u32>>, end: usize) -> bool {
@@ -198,6 +225,14 @@ pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<Stri
 fn odd_spread(spread: Spread) -> Option<String> {
     let Spread::Uniform(cutoff) = spread else { return None };
     (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
+}
+
+/// A remark on a lifetime that some are born without.
+fn odd_lifetime(Varied { mean, half_width }: Varied) -> Option<String> {
+    let least = mean - half_width.abs();
+    let some =
+        || format!("{least} s is the least of it: who is born with no more than 0 s lives on, as without a lifetime");
+    (half_width != 0.0 && least < 0.0).then(some)
 }
 
 /// A remark on odd ends of a spring.
