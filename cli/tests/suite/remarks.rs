@@ -33,6 +33,23 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
         (emitter(r#""elasticity": {"mean": 0.25, "half_width": 0.5}"#), "a.json:emitters[0].elasticity: -0.25 is below"),
         (emitter(r#""spread": {"uniform": 3.2}"#), "a.json:emitters[0].spread: 3.2 rad is not from 0 to π"),
         (emitter(r#""spread": {"uniform": -1}"#), "a.json:emitters[0].spread: -1 rad is not from 0 to π"),
+        (
+            emitter(r#""lifetime": {"mean": 1, "half_width": 1.5}"#),
+            "a.json:emitters[0].lifetime: -0.5 s is the least of it",
+        ),
+        (emitter(r#""drag": 0.5"#), "a.json:emitters[0].drag: 0.5 brakes nobody"),
+        (r#"{"particles": [{}, {"drag": 2}, {"drag": 1}]}"#.into(), "a.json:particles[1].drag: 2 brakes nobody"),
+        (
+            r#"{"particles": [{"charge": -1}], "forces": [{"gravity": {"acceleration": [0, -1, 0]}}]}"#.into(),
+            "a.json:particles[0].charge: -1 pulls nobody",
+        ),
+        (
+            r#"{"forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}], "boxes": [
+                {"sides": [0.2, 0.2, 0.2], "mass": 1, "position": [0, 0.1, 0]},
+                {"sides": [0.2, 0.2, 0.2], "mass": 10, "position": [0, 0.3, 0]}]}"#
+                .into(),
+            "a.json:boxes: bodies of 10 kg sink into those of 1 kg that bear them, and through them at last; run.substeps of 2 are enough",
+        ),
         (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
         (
             r#"{"particles": [{"radius": 0.1, "mass": 1000}, {"radius": 0.1, "position": [1, 0, 0]}], "contacts": {"position": {}}}"#.into(),

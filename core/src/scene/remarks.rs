@@ -4,12 +4,14 @@ use super::{Boxes, Cloth, Cord, Growth, Response, Run, SceneFile, SoftBody, Tuft
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::{ForceKind, Friction};
+use crate::math::{length, sqrt};
 use crate::reap::ReaperKind;
 use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::Arguments;
+use glam::Vec3;
 
 /// All directions \[rad\]: π, also as files round it.
 const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
@@ -53,6 +55,7 @@ impl SceneFile {
             add(format_args!("emitters[{i}].stop"), ended.map(nothing));
         }
         add(format_args!("contacts.position"), self.uneven_balls());
+        add(format_args!("boxes"), self.uneven_boxes());
         if let Some(Response::Force(penalty)) = self.contacts {
             add(format_args!("contacts.force.friction.static"), odd_friction(penalty.friction));
         }
@@ -81,6 +84,31 @@ impl SceneFile {
             )
         };
         (most > UNEVEN * least).then(uneven)
+    }
+
+    /// A remark on bodies that weigh too much for others that they may come to lie on: in a sub-step of h a body sinks into what bears it by the ratio of
+    /// their masses times g h² / 4, as measured, and from a few hundredths of its size on through it.
+    fn uneven_boxes(&self) -> Option<String> {
+        /// The share of the smallest side that one may sink in.
+        const SHARE: f32 = 0.01;
+        let free = || self.boxes.iter().filter(|boxes| !boxes.fixed && boxes.mass > 0.0);
+        let heaviest = free().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
+        let lightest = free().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
+        let pull = self.forces.iter().fold(Vec3::ZERO, |sum, force| match force {
+            ForceKind::Gravity(gravity) => sum + gravity.acceleration,
+            _ => sum,
+        });
+        let h = self.run.dt as f32 / self.run.substeps.max(1) as f32;
+        let depth = 0.25 * (heaviest.mass / lightest.mass) * length(pull) * h * h;
+        let room = SHARE * lightest.sides.min_element();
+        let sinks = || {
+            let needed = (self.run.substeps.max(1) as f32 * sqrt(depth / room)) as u32 + 1;
+            format!(
+                "bodies of {} kg sink into those of {} kg that bear them, and through them at last; run.substeps of {needed} are enough",
+                heaviest.mass, lightest.mass
+            )
+        };
+        (depth > room && heaviest.mass > lightest.mass).then(sinks)
     }
 
     /// Remarks on the elasticity of what the scene begins with.
