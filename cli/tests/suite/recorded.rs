@@ -58,7 +58,7 @@ impl Varied {
     fn json(&self) -> Value {
         let mut scene = json!({
             "run": {"dt": DT, "integrator": "verlet", "capacity": 30, "seed": 5},
-            "forces": [{"gravity": {"acceleration": [0, -9.8, 0]}}],
+            "forces": [{"gravity": {"acceleration": [0, -9.8, 0]}}, {"drag": {}}],
             "scenery": [{"shape": {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0]}}}],
         });
         let particle = |i: usize| {

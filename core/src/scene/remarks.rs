@@ -198,29 +198,21 @@ impl SceneFile {
 }
 
 impl SceneFile {
-    /// Remarks on the first drag and the first charge of a list that no force of the scene looks at.
+    /// Remarks on the first drag of a list where the scene has forces, of which none looks at it.
     fn add_unread(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
-        let mut look = |list: &str, name: &str, (forces, does): (&str, &str), values: &mut dyn Iterator<Item = f32>| {
-            let first = values.enumerate().find(|(_, value)| *value != 0.0);
-            let Some((i, value)) = first else { return };
+        let reads = |force: &ForceKind| matches!(force, ForceKind::Drag(_) | ForceKind::Wind(_));
+        if self.forces.is_empty() || self.forces.iter().any(reads) {
+            return;
+        }
+        let mut look = |list: &str, drags: &mut dyn Iterator<Item = f32>| {
+            let Some((i, drag)) = drags.enumerate().find(|(_, drag)| *drag != 0.0) else { return };
             let nothing =
-                format!("{value} {does} nobody, for no force looks at it; add {forces} to the forces, or take 0");
-            add(format_args!("{list}[{i}].{name}"), Some(nothing));
+                || format!("{drag} brakes nobody, for no force looks at it; add drag or wind to the forces, or take 0");
+            add(format_args!("{list}[{i}].drag"), Some(nothing()));
         };
-        if !self.forces.iter().any(|force| matches!(force, ForceKind::Drag(_) | ForceKind::Wind(_))) {
-            let forces = ("drag or wind", "brakes");
-            look("particles", "drag", forces, &mut self.particles.iter().map(|particle| particle.drag));
-            look("emitters", "drag", forces, &mut self.emitters.iter().map(|emitter| emitter.drag.mean));
-            look("boxes", "drag", forces, &mut self.boxes.iter().map(|boxes| boxes.drag));
-        }
-        let pulls = |force: &ForceKind| {
-            matches!(force, ForceKind::Coulomb(_) | ForceKind::PowerLaw(_) | ForceKind::LennardJones(_))
-        };
-        if !self.forces.iter().any(pulls) {
-            let forces = ("coulomb", "pulls");
-            look("particles", "charge", forces, &mut self.particles.iter().map(|particle| particle.charge));
-            look("emitters", "charge", forces, &mut self.emitters.iter().map(|emitter| emitter.charge.mean));
-        }
+        look("particles", &mut self.particles.iter().map(|particle| particle.drag));
+        look("emitters", &mut self.emitters.iter().map(|emitter| emitter.drag.mean));
+        look("boxes", &mut self.boxes.iter().map(|boxes| boxes.drag));
     }
 
     /// Tells whether strands turn an end, root or tip, that is neither held nor clamped in any of them: one of the two particles there, of the file's
@@ -260,7 +252,7 @@ fn odd_lifetime(Varied { mean, half_width }: Varied) -> Option<String> {
     let least = mean - half_width.abs();
     let some =
         || format!("{least} s is the least of it: who is born with no more than 0 s lives on, as without a lifetime");
-    (half_width != 0.0 && least < 0.0).then(some)
+    (half_width != 0.0 && least < 0.0 && least.is_finite()).then(some)
 }
 
 /// A remark on odd ends of a spring.
