@@ -179,10 +179,10 @@ impl<'m> Links<'m> {
         for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
             let (faster, fast) = (self.sum_at(particle, self.pull) * self.weight[particle], self.velocity[particle]);
             let (time, left, share, number) = (self.time, self.left, self.share, self.chain.number(particle));
-            let from = self.origin + self.place[particle];
+            let Some(wall) = self.walls.get_mut(number).filter(|wall| wall.is_near()) else { continue };
+            let from = wall.image(self.room.as_ref(), self.origin + self.place[particle]);
             let (pace, time) =
                 if time > 0.0 { (Pace::Way { from, time, left, share }, time) } else { (Pace::Settled, 1.0) };
-            let Some(wall) = self.walls.get_mut(number).filter(|wall| wall.is_near()) else { continue };
             let Some(led) = look(wall, pace, faster / time, fast) else { continue };
             if self.weight[particle] > 0.0 && led.is_finite() {
                 (self.velocity[particle], changed) = (led, true);

@@ -2,6 +2,7 @@
 
 use super::{NEAR, NONE, NOTICED, SLIDES, Wall};
 use crate::constrain::contacts::TangentImpulse;
+use crate::index::{Room, between};
 use crate::math::{aside, length, max, min};
 use glam::Vec3;
 
@@ -41,8 +42,11 @@ impl Wall {
             (self.state, self.brake, self.last) = (NEAR, 0.0, 0.0);
             return Some(driven);
         }
-        let changed =
-            if self.presses() { rubs && self.grip(max(load, 0.0), driven) } else { self.is_met_in(pace, load) };
+        let changed = if self.presses() {
+            rubs && self.grip(max(load, 0.0), self.slip(pace, driven))
+        } else {
+            self.is_met_in(pace, load)
+        };
         if changed {
             self.state = SLIDES;
         }
@@ -56,7 +60,7 @@ impl Wall {
             let load = max(self.least(pace) - driven.dot(self.normal), 0.0);
             self.touch.begin(self.touch.pressed() + load);
             self.last = self.brake;
-            self.tangent.give(self.slip(driven) * -self.brake);
+            self.tangent.give(self.slip(pace, driven) * -self.brake);
         }
     }
 
@@ -64,6 +68,11 @@ impl Wall {
     pub(in crate::constrain) fn forget_paces(&mut self) {
         self.touch.begin(0.0);
         self.tangent = TangentImpulse::of(Vec3::ZERO);
+    }
+
+    /// A place in a room as it is nearest to where its particle touches it.
+    pub(in crate::constrain) fn image(&self, room: Option<&Room>, place: Vec3) -> Vec3 {
+        if room.is_some() { self.stuck + between(room, self.stuck, place) } else { place }
     }
 
     /// What it lets pass of a direction.
@@ -97,20 +106,30 @@ impl Wall {
         }
     }
 
+    /// How fast a particle goes along it that does not slip. In a pace that is the whole of the sub-step it begins off its place by what the method shows
+    /// beyond velocities, which that makes good.
+    fn along(&self, pace: Pace) -> Vec3 {
+        let way = match pace {
+            Pace::Way { from, time, share, .. } if share == 1.0 => (self.stuck - from) / time,
+            _ => self.velocity,
+        };
+        aside(way, self.normal)
+    }
+
     /// How fast a particle slips along it that would go so fast without it.
-    fn slip(&self, driven: Vec3) -> Vec3 {
-        aside(driven - self.velocity, self.normal) / (1.0 + self.brake)
+    fn slip(&self, pace: Pace, driven: Vec3) -> Vec3 {
+        aside(driven - self.along(pace), self.normal) / (1.0 + self.brake)
     }
 
     /// How fast a particle goes that it presses, and that would go so fast without it.
     fn led(&self, pace: Pace, driven: Vec3) -> Vec3 {
-        aside(self.velocity, self.normal) + self.slip(driven) + self.normal * self.least(pace)
+        self.along(pace) + self.slip(pace, driven) + self.normal * self.least(pace)
     }
 
     /// Makes its particle so much heavier that what slips is braked by what friction can by what presses: that never drives it, whatever presses. Tells
     /// whether that is other than before.
-    fn grip(&mut self, load: f32, driven: Vec3) -> bool {
-        let ([resting, sliding], fast) = (self.touch.friction(), length(self.slip(driven)));
+    fn grip(&mut self, load: f32, slip: Vec3) -> bool {
+        let ([resting, sliding], fast) = (self.touch.friction(), length(slip));
         let brake = match resting * load {
             most if most > 0.0 && most >= HELD * fast => HELD,
             _ if fast > 0.0 => min(sliding * load / fast, HELD),
