@@ -50,7 +50,8 @@ use links::Links;
 /// The scenery presses particles while links are solved, and its friction brakes them by that: round a peg pulls grow as capstan's law has it, T₂ / T₁ =
 /// exp(μ φ). Links then move a particle along its wall alone, as if it were so much heavier as friction brakes it; which walls press, and how hard, rounds
 /// of the solution tell, 24 at the most. What the scenery is near has no bounds of energy of its own:
-/// where friction holds loads, points may get some millimetres into a peg, and with `verlet` loads may gain a share of their energy. It takes 38 words for each particle through a step.
+/// where friction holds loads, points may get some millimetres into a peg, and loads of some hundred times the rope's mass may gain some hundredths of their
+/// energy, or stretch it by as much. It takes 38 words for each particle through a step.
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing, and the parts are solved each by itself. A link whose ends are in one place
 /// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a
