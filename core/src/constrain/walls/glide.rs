@@ -110,7 +110,7 @@ impl Wall {
     /// beyond velocities, which that makes good.
     fn along(&self, pace: Pace) -> Vec3 {
         let way = match pace {
-            Pace::Way { from, time, share, .. } if share == 1.0 => (self.stuck - from) / time,
+            Pace::Way { from, time, share: 1.0, .. } => (self.stuck - from) / time,
             _ => self.velocity,
         };
         aside(way, self.normal)
