@@ -48,6 +48,13 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
                 .into(),
             "a.json:boxes: bodies of 10 kg sink into those of 1 kg that bear them, and through them at last; run.substeps of 2 are enough",
         ),
+        (
+            r#"{"forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}], "boxes": [
+                {"sides": [0.2, 0.2, 0.2], "mass": 1e-18, "position": [0, 0.1, 0]},
+                {"sides": [0.2, 0.2, 0.2], "mass": 1e18, "position": [0, 0.3, 0]}]}"#
+                .into(),
+            "run.substeps of 4294967295 are enough",
+        ),
         (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
         (
             r#"{"particles": [{"radius": 0.1, "mass": 1000}, {"radius": 0.1, "position": [1, 0, 0]}], "contacts": {"position": {}}}"#.into(),

@@ -102,7 +102,8 @@ impl SceneFile {
         let depth = 0.25 * (heaviest.mass / lightest.mass) * length(pull) * h * h;
         let room = SHARE * lightest.sides.min_element();
         let sinks = || {
-            let needed = (self.run.substeps.max(1) as f32 * sqrt(depth / room)) as u32 + 1;
+            let needed = (self.run.substeps.max(1) as f32 * sqrt(depth / room)) as u32;
+            let needed = needed.saturating_add(1);
             format!(
                 "bodies of {} kg sink into those of {} kg that bear them, and through them at last; run.substeps of {needed} are enough",
                 heaviest.mass, lightest.mass

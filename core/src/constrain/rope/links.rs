@@ -162,7 +162,7 @@ impl<'m> Links<'m> {
         !self.walls.is_empty() && (0..self.weight.len()).any(|particle| self.wall(particle).is_some())
     }
 
-    /// What a wall lets pass of a direction in which a particle would go.
+    /// The part of a direction in which a particle would go that its wall lets pass.
     pub(super) fn pass(&self, particle: usize, along: Vec3) -> Vec3 {
         self.wall(particle).map_or(along, |wall| wall.pass(along))
     }

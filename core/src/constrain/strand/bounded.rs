@@ -63,7 +63,7 @@ pub(super) struct Bounded<'a> {
 /// What it does and works with in a sub-step.
 pub(super) struct Course<'m> {
     pub(super) joints: &'m mut [Joint],
-    /// What they were as the sub-step began.
+    /// The joints as the sub-step began.
     pub(super) before: &'m [Begun],
     pub(super) work: &'m mut [u32],
 }

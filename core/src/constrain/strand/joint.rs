@@ -18,18 +18,18 @@ pub(super) struct Joint {
     pub(super) left: Vec3,
 }
 
-/// What a sub-step remembers of a joint as that began.
+/// A joint as a sub-step began, as far as that is remembered.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Begun {
     /// The edge's frame.
     pub(super) turn: [f32; 4],
-    /// What rounding had left of the point's way \[m\].
+    /// The part of the point's way that rounding had left \[m\].
     pub(super) left: Vec3,
 }
 
 impl Joint {
-    /// What is to be remembered of it.
+    /// The part of it that is remembered.
     pub(super) fn begun(&self) -> Begun {
         Begun { turn: self.turn, left: self.left }
     }

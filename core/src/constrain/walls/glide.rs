@@ -8,10 +8,10 @@ use glam::Vec3;
 
 /// The change of what friction gives that is small enough, as a share.
 const SETTLED: f32 = 0.01;
-/// How many times as heavy as it is a particle is that friction holds.
+/// The times as heavy as by itself that a particle is which friction holds.
 const HELD: f32 = 1e3;
 
-/// What is solved by speeds, as a particle begins it.
+/// A solution by speeds, as a particle begins it.
 #[derive(Clone, Copy)]
 pub(in crate::constrain) enum Pace {
     /// A part of a sub-step: where the particle is, how long it takes and what is left of the sub-step behind it \[s\], and what share of that it is.
@@ -75,7 +75,7 @@ impl Wall {
         if room.is_some() { self.stuck + between(room, self.stuck, place) } else { place }
     }
 
-    /// What it lets pass of a direction.
+    /// The part of a direction that it lets pass.
     pub(in crate::constrain) fn pass(&self, along: Vec3) -> Vec3 {
         if self.presses() { aside(along, self.normal) } else { along }
     }
