@@ -94,6 +94,7 @@ fn light_links_hold_heavy_bobs() {
 /// Soft links answer weight by what it is, whatever the method shows of it within a sub-step.
 #[test]
 fn what_hangs_still_on_soft_links_shows_no_speed() {
+    let mut cases = 0;
     for (mass, length, compliance) in [(0.1f32, 0.1f32, 0.01f32), (2.0, 0.5, 1e-3)] {
         for links in [1usize, 5] {
             let part = Particle { mass, drag: 2.0 * mass, ..Particle::REST };
@@ -104,6 +105,9 @@ fn what_hangs_still_on_soft_links_shows_no_speed() {
             for constraint in &kinds[..if links == 1 { 2 } else { 1 }] {
                 for method in Method::ALL {
                     for substeps in [1, 5, 20] {
+                        if !is_run(&mut cases) {
+                            continue;
+                        }
                         let forces = (DOWN, Drag {});
                         let parts = Scene { start: &start, forces: &forces, constraints: constraint, ..Scene::EMPTY };
                         let scene = Scene { substeps, integrator: method.integrator(), ..parts };

@@ -2,7 +2,7 @@
 
 use pointmass::constrain::{ShapeMatching, Shell, ShellParams, StrandParams, Strands, Tie};
 use pointmass::{Constraint, Distance, Drag, Gravity, Method, Particle, Rope, Scene, Sheet, Vec3};
-use pointmass_tests::{run, started};
+use pointmass_tests::{is_run, run, started};
 
 /// Something that hangs.
 struct Hung {
@@ -81,7 +81,7 @@ fn things(scale: f32) -> Vec<Hung> {
 
 #[test]
 fn what_hangs_still_shows_no_speed() {
-    let mut failures = vec![];
+    let (mut cases, mut failures) = (0, vec![]);
     for (round, scale) in [1.0, 0.1, 20.0].into_iter().enumerate() {
         // Times go by the root of the size.
         let step = f64::from(scale).sqrt() / 60.0;
@@ -93,6 +93,9 @@ fn what_hangs_still_shows_no_speed() {
             let methods = Method::ALL.iter().enumerate().filter(|(number, _)| number % 3 == round);
             for (_, &method) in methods {
                 for substeps in [1, 4, 10] {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
                     let parts = Scene { start: &start, forces: &forces, constraints: &**bond, ..Scene::EMPTY };
                     let scene = Scene { substeps, integrator: method.integrator(), ..parts };
                     let mut system = started(&scene, start.len(), 0);

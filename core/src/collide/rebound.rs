@@ -11,7 +11,7 @@ use crate::math::{along, aside, dot, is_zero, length, max, minus, over, plus, sc
 use crate::observe::{Impact, Sliding};
 use crate::shape::{Collider, Hit, Ride, Segment};
 use crate::time::Time;
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 /// The largest number of times that a point beside a hit is sought farther back.
 const MAX_RETREATS: u32 = 12;
@@ -19,14 +19,19 @@ const MAX_RETREATS: u32 = 12;
 /// By how much a normal of length one turns at the most on a surface that moves within itself: by what rounding does.
 const WITHIN_ITSELF: f32 = 1e-6;
 
+/// The same where the surface curves, of how much it turns as it is taken along.
+const WITHIN_ITSELF_CURVED: f32 = 1.0 / 16.0;
+
 /// A particle that a hit brings to rest on a surface.
 struct Landing<'r> {
     /// Where it is set off to, and from when to when it goes on.
     beside: Vec3,
     during: [Time; 2],
-    /// How the surface moves there \[m/s\], and where it takes it, if it moves.
+    /// How the surface moves there \[m/s\], and where it takes it, if it moves: what is held by it, and what slides on one that curves and moves within
+    /// itself.
     surface: Vec3,
     ride: Option<&'r Ride>,
+    belt: Option<&'r Ride>,
     /// The speed at which it parted from the surface before the hit \[m/s\].
     incoming: f32,
     /// Its velocity along the surface, as seen from there, before friction and after it, and in the world after all \[m/s\].
@@ -38,7 +43,25 @@ struct Landing<'r> {
     friction: Friction,
 }
 
+/// How something slides on: the drive along the surface and what presses \[m/s²\], the way \[m\], and the velocity along it in the end \[m/s\].
+struct Slid {
+    drive: Vec3,
+    pressing: f32,
+    way: Vec3,
+    end: Vec3,
+}
+
 impl Landing<'_> {
+    /// How it slides on for a time, as seen from what takes it along.
+    fn slid(&self, ride: Option<&Ride>, normal: Vec3, rest: f32) -> Slid {
+        let drive = seen(self.acceleration, ride, self.slip);
+        // What friction has braked may be pressed no more.
+        let pressing = max(-dot(drive, normal), 0.0);
+        let drive = along(drive, normal, pressing);
+        let (way, end) = Slide { velocity: self.slip, drive, pressing, friction: self.friction }.after(rest);
+        Slid { drive, pressing, way, end }
+    }
+
     /// The place and the velocity after a time of what slides on a surface that moves within itself, or along its normal: along the surface it goes as in
     /// a world that stands still, braked as much as it is as seen from there, with such a drive and as fast in the end.
     fn glide(&self, ride: &Ride, normal: Vec3, [drive, end]: [Vec3; 2], rest: f32, pressing: f32) -> (Vec3, Vec3) {
@@ -84,9 +107,11 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         // Whoever is set off from the surface has come there with the speed that is left so high.
         let onward = slowed(outgoing, dot(mean, minus(beside, place)));
         let ride = self.ride(&meeting.hit, beside, during);
-        let ride = ride.as_ref();
+        let belt = ride.as_ref().and_then(|ride| self.belt(ride, meeting, beside, during));
+        let (ride, belt) = (ride.as_ref(), belt.as_ref());
         let goes = ride.map_or(surface, |ride| ride.velocity[0]);
-        let pressing = -dot(seen(pressed, ride, aside(minus(before, goes), normal)), normal);
+        let pressed_by = |ride| -dot(seen(pressed, ride, aside(minus(before, goes), normal)), normal);
+        let pressing = belt.map_or(pressed_by(ride), |belt| max(pressed_by(ride), pressed_by(Some(belt))));
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
@@ -116,7 +141,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             return onward;
         }
         let (friction, acceleration) = (mixed.friction, going.held(normal));
-        let landing = Landing { beside, during, surface, ride, incoming, came, slip, after, acceleration, friction };
+        let landing =
+            Landing { beside, during, surface, ride, belt, incoming, came, slip, after, acceleration, friction };
         self.stay(path, meeting, &lead, landing)
     }
 
@@ -158,17 +184,18 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The way on of a particle that a hit brings to rest on a surface: along that and with it, for the time that is left.
     #[inline(always)]
     fn stay(&mut self, path: &Path, meeting: &Meeting, lead: &Option<Lead>, landing: Landing<'_>) -> Path {
-        let Landing { beside, during, surface, ride, incoming, came, slip, after, .. } = landing;
+        let Landing { beside, during, surface, incoming, came, slip, after, .. } = landing;
+        let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
+        let normal = meeting.hit.normal;
+        let on_belt =
+            landing.belt.filter(|_| !is_zero(slip)).map(|belt| (Some(belt), landing.slid(Some(belt), normal, rest)));
+        let (ride, Slid { drive, pressing, way, end }) = match on_belt {
+            Some(slides) if !is_zero(slides.1.end) => slides,
+            _ => (landing.ride, landing.slid(landing.ride, normal, rest)),
+        };
         if let (Some(left), Some(ride)) = (&mut self.left, ride) {
             **left = plus(**left, minus(ride.velocity[1], ride.velocity[0]));
         }
-        let (place, rest) = (meeting.place, (during[1] - during[0]).seconds());
-        let normal = meeting.hit.normal;
-        let drive = seen(landing.acceleration, ride, slip);
-        // What friction has braked may be pressed no more.
-        let pressing = max(-dot(drive, normal), 0.0);
-        let drive = along(drive, normal, pressing);
-        let (way, end) = Slide { velocity: slip, drive, pressing, friction: landing.friction }.after(rest);
         let (stays, pull) = (is_zero(slip) && is_zero(end), Some(landing.acceleration));
         let mut onward = if let Some(ride) = ride {
             // A particle that falls from where it was set off to goes along the surface meanwhile, which friction would
@@ -203,6 +230,30 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         if is_zero(hit.velocity) { None } else { self.walls.ride(&seat) }
     }
 
+    /// The same where the surface curves, turns as it goes, and yet is where it was beside the hit, as that of a drum is that spins about its own axis: what
+    /// slides is taken along as by a belt, which does not turn, and meets the curve as it would if that stood still.
+    fn belt(&self, ride: &Ride, meeting: &Meeting, beside: Vec3, during: [Time; 2]) -> Option<Ride> {
+        let Hit { normal, slack, .. } = meeting.hit;
+        let turned = length(minus(ride.turn * normal, normal));
+        if turned <= WITHIN_ITSELF {
+            return None;
+        }
+        let to = along(beside, normal, -(LAIN * slack));
+        let [now, then] = during
+            .map(|instant| Segment { from: beside, to, radius: self.radius, during: [instant; 2] })
+            .map(|seat| self.walls.first_hit(&seat));
+        let (now, then) = (now?, then?);
+        let (moved, turns) = (LAIN * (then.time - now.time).abs(), length(minus(then.normal, now.normal)));
+        if !(moved <= 1.0 && turns <= WITHIN_ITSELF_CURVED * turned) {
+            return None;
+        }
+        let time = (during[1] - during[0]).seconds();
+        let velocity = [ride.velocity[0], then.velocity].map(|velocity| aside(velocity, normal));
+        let acceleration = if time > 0.0 { over(minus(velocity[1], velocity[0]), time) } else { Vec3::ZERO };
+        let place = along(beside, plus(velocity[0], velocity[1]), 0.5 * time);
+        Some(Ride { place, velocity, acceleration, spin: [Vec3::ZERO; 2], turn: Mat3::IDENTITY })
+    }
+
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
     /// way there is free; else as far back on the path as is free, at last where the chord begins, or where that is carried
     /// to. A surface that moves takes what is back on the path along to the instant of the hit.
@@ -211,12 +262,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let Meeting { chord, hit, begun, time: s, .. } = meeting;
         let now = path.instant(*s);
         let span = (now - chord.during[0]).seconds();
-        let (moves, share) = (!is_zero(hit.velocity), max(s - begun, f32::MIN_POSITIVE));
+        let (advance, share) = (dot(hit.velocity, hit.normal), max(s - begun, f32::MIN_POSITIVE));
         let taken = |point: Vec3, time: f32| {
-            if moves { along(point, hit.velocity, span * ((s - time) / share)) } else { point }
+            if advance == 0.0 { point } else { along(point, hit.normal, advance * (span * ((s - time) / share))) }
         };
         let free = |segment: Segment| self.walls.first_hit(&segment).is_none();
-        let closing = max(dot(minus(hit.velocity, path.velocity(*s)), hit.normal), f32::MIN_POSITIVE);
+        let closing = max(advance - dot(path.velocity(*s), hit.normal), f32::MIN_POSITIVE);
         let beside = along(place, hit.normal, 2.0 * hit.slack);
         // As a fraction of the path, like all its instants.
         let mut back = 2.0 * hit.slack / (closing * path.duration());
