@@ -262,7 +262,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let Meeting { chord, hit, begun, time: s, .. } = meeting;
         let now = path.instant(*s);
         let span = (now - chord.during[0]).seconds();
-        let (advance, share) = (dot(hit.velocity, hit.normal), max(s - begun, f32::MIN_POSITIVE));
+        let (moves, advance) = (!is_zero(hit.velocity), dot(hit.velocity, hit.normal));
+        let share = max(s - begun, f32::MIN_POSITIVE);
         let taken = |point: Vec3, time: f32| {
             if advance == 0.0 { point } else { along(point, hit.normal, advance * (span * ((s - time) / share))) }
         };
@@ -276,8 +277,16 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let time = max(s - back, *begun);
             let before = taken(path.at(time), time);
             if free(Segment { to: before, during: [chord.during[0], now], ..*chord }) {
-                let aside = Segment { from: before, to: beside, during: [now; 2], ..*chord };
-                return if free(aside) { beside } else { before };
+                let aside = |to: Vec3| Segment { from: before, to, during: [now; 2], ..*chord };
+                if free(aside(beside)) {
+                    return beside;
+                }
+                // Where the surface turns, the hit may lie deeper in it than its slack says: beside it is off where that is.
+                let raised = along(beside, hit.normal, length(minus(before, beside)));
+                let down = Segment { from: raised, to: beside, during: [now; 2], ..*chord };
+                let surface = self.walls.first_hit(&down).filter(|_| moves);
+                let off = surface.map(|there| along(down.at(there.time), there.normal, 2.0 * there.slack));
+                return off.filter(|&off| free(aside(off))).unwrap_or(before);
             }
             back *= 4.0;
         }

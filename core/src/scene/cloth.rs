@@ -268,6 +268,14 @@ impl Cloth {
         edges.map(|edge| length(place(edge[0]) - place(edge[1]))).fold(f32::INFINITY, min)
     }
 
+    /// The mean mass of its particles \[kg\], if that is known before a mesh is read.
+    pub(super) fn point_mass(&self) -> Option<f32> {
+        let Form::Sheet(sheet) = &self.form else { return None };
+        let [a, b] = sheet.sides;
+        let area = length(a.cross(b));
+        Some(self.density.map_or(self.mass, |density| density * area / self.count().unwrap_or(1) as f32))
+    }
+
     /// What it is made of, if it is a shell.
     pub(super) fn shell_params(&self) -> Option<ShellParams> {
         let stretch = |Hung { stretch, .. }: Hung| {

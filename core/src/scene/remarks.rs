@@ -56,6 +56,9 @@ impl SceneFile {
         }
         add(format_args!("contacts.position"), self.uneven_balls());
         add(format_args!("boxes"), self.uneven_boxes());
+        for (i, cloth) in self.cloths.iter().enumerate() {
+            add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
+        }
         if let Some(Response::Force(penalty)) = self.contacts {
             add(format_args!("contacts.force.friction.static"), odd_friction(penalty.friction));
         }
@@ -94,12 +97,8 @@ impl SceneFile {
         let free = || self.boxes.iter().filter(|boxes| !boxes.fixed && boxes.mass > 0.0);
         let heaviest = free().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
         let lightest = free().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
-        let pull = self.forces.iter().fold(Vec3::ZERO, |sum, force| match force {
-            ForceKind::Gravity(gravity) => sum + gravity.acceleration,
-            _ => sum,
-        });
         let h = self.run.dt as f32 / self.run.substeps.max(1) as f32;
-        let depth = 0.25 * (heaviest.mass / lightest.mass) * length(pull) * h * h;
+        let depth = 0.25 * (heaviest.mass / lightest.mass) * length(self.pull()) * h * h;
         let room = SHARE * lightest.sides.min_element();
         let sinks = || {
             let needed = (self.run.substeps.max(1) as f32 * sqrt(depth / room)) as u32;
@@ -110,6 +109,44 @@ impl SceneFile {
             )
         };
         (depth > room && heaviest.mass > lightest.mass).then(sinks)
+    }
+
+    /// A remark on what weighs too much for a sheet with thickness that hangs by some of its points and that it may come to lie on: what its points are pushed by in a sub-step they take back in the
+    /// next, which the damping of the material holds up. So a body sinks deeper by its mass over that of a point times g h (h / 4 + damping) for
+    /// sub-steps of h, as measured within a factor of two, and from the thickness on through the sheet.
+    fn heavy_on_cloth(&self, cloth: &Cloth) -> Option<String> {
+        if cloth.fixed.is_empty() {
+            return None;
+        }
+        let (thickness, point) = (cloth.thickness.filter(|&thickness| thickness > 0.0)?, cloth.point_mass()?);
+        let boxes = self.boxes.iter().filter(|boxes| !boxes.fixed).map(|boxes| boxes.mass);
+        let balls = self.particles.iter().filter(|ball| !ball.fixed && ball.radius > 0.0).map(|ball| ball.mass);
+        let load = boxes.chain(balls).fold(0.0, f32::max);
+        let pull = length(self.pull());
+        let damping = cloth.shell_params().map_or(0.0, |params| params.damping);
+        let depth = |substeps: u32| {
+            let h = self.run.dt as f32 / substeps as f32;
+            load / point * pull * h * (0.25 * h + damping)
+        };
+        let taken = self.run.substeps.max(self.contacts.map_or(1, |response| response.substeps()));
+        let enough = (taken..=1000).find(|&substeps| !(depth(substeps) > thickness));
+        let sinks = || {
+            let helps = enough.map_or("no sub-steps are enough for so much damping".into(), |n| {
+                format!("run.substeps of {n} are enough")
+            });
+            format!(
+                "what weighs {load} kg sinks into it, whose points weigh {point} kg each, or falls through; {helps}"
+            )
+        };
+        (enough != Some(taken)).then(sinks)
+    }
+
+    /// The sum of all gravity \[m/s²\].
+    fn pull(&self) -> Vec3 {
+        self.forces.iter().fold(Vec3::ZERO, |sum, force| match force {
+            ForceKind::Gravity(gravity) => sum + gravity.acceleration,
+            _ => sum,
+        })
     }
 
     /// Remarks on the elasticity of what the scene begins with.

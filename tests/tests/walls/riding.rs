@@ -2,9 +2,9 @@
 
 use pointmass::force::Friction;
 use pointmass::motion::Motion;
-use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Disc, Moving, Placed, Plane};
+use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Cylinder, Disc, Moving, Placed, Plane, Sphere};
 use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Time, Vec3};
-use pointmass_tests::{f64s, gap, run, started};
+use pointmass_tests::{Form, f64s, gap, is_run, run, started};
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
@@ -200,4 +200,50 @@ fn on_whatever_moves_it_goes_along() {
             }
         }
     }
+}
+
+#[test]
+fn what_slides_in_a_smooth_drum_that_spins_gains_nothing() {
+    let center = Vec3::new(0.3, -1.0, 2.0);
+    let drums: [(&str, fn(Vec3, f32) -> Form); 2] = [
+        ("cylinder", |center, size| Form::Cylinder(Cylinder { center, radius: 0.5 * size, height: size })),
+        ("sphere", |center, size| Form::Sphere(Sphere { center, radius: 0.5 * size })),
+    ];
+    let (mut cases, mut failures) = (0, vec![]);
+    for (name, drum) in &drums {
+        for (size, spin) in [(1.0f32, 0.1f32), (1.0, -0.3), (1.0, 2.0), (4.0, -1.0), (0.2, 3.0)] {
+            for elasticity in [0.0, 0.3, 0.8, 1.0] {
+                for (method, rate) in [
+                    (Method::Verlet, 60.0),
+                    (Method::Symplectic, 60.0),
+                    (Method::Rk4, 240.0),
+                    (Method::Midpoint, 100.0),
+                ] {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
+                    let motion = Motion { pivot: center, spin, ..Motion::STILL };
+                    let drum = Moving::new(drum(center, size), &EVERYWHERE, motion);
+                    // It is let go 60 degrees from the lowest place; the drum's axis lies.
+                    let position = center + Vec3::new(0.75f32.sqrt(), 0.0, -0.5) * (0.499_998 * size);
+                    let start = [Particle { position, elasticity, ..Particle::REST }];
+                    let forces = &Gravity { acceleration: Vec3::NEG_Z * 9.81 };
+                    let integrator = method.integrator();
+                    let scene = Scene { start: &start, forces, colliders: &drum, integrator, ..Scene::EMPTY };
+                    let mut system = started(&scene, 1, 0);
+                    run(&mut system, &scene, 1.0 / rate, (3.0 * rate) as u32);
+                    let particles = system.particles();
+                    let (x, v) = (f64s(particles.position[0]), f64s(particles.velocity[0]));
+                    let depth = 0.25 * 9.81 * f64::from(size);
+                    let gained = (0.5 * gap(v, [0.0; 3]).powi(2) + 9.81 * (x[2] - f64::from(position.z))) / depth;
+                    if !(gained < 0.1 && gained > -0.3) {
+                        failures.push(format!(
+                            "{name} of {size} m, {spin}/s, e {elasticity}, {method}, {rate}/s: {gained:.3}"
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
 }
