@@ -136,7 +136,11 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
         if !rests {
-            let mut onward = Path::onward(beside, along(plus(surface, slip), normal, onward), going.mean, during);
+            let fast = along(plus(surface, slip), normal, onward);
+            // What constraints have moved shows no force that would press it on: if the hit has left it the speed of the surface alone, it lies there.
+            let lies = is_zero(going.mean) && fast == surface && self.left_or(fast) == surface;
+            let from = if lies && has_lain(path, meeting, place) { lain_to(path, meeting) } else { beside };
+            let mut onward = Path::onward(from, fast, going.mean, during);
             self.lead_on(&lead, &mut onward, None);
             return onward;
         }
@@ -314,12 +318,17 @@ fn seen(acceleration: Vec3, ride: Option<&Ride>, slip: Vec3) -> Vec3 {
     ride.map_or(acceleration, |ride| minus(acceleration, ride.acceleration_of(slip)))
 }
 
-/// Tells whether a path begins as what lay on the surface that it hits, which stands still, leaves off: nearby, and hardly moving.
+/// Where what lies on a surface is at the instant at which a path hits that: off it as where the path begins.
+fn lain_to(path: &Path, meeting: &Meeting) -> Vec3 {
+    along(path.x0, meeting.hit.velocity, path.duration() * meeting.time)
+}
+
+/// Tells whether a path begins as what lay on the surface that it hits leaves off: nearby, and hardly moving as seen from there.
 /// Falling onto it anew each step, it has not moved at all; else it would creep.
 fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
     let near = LAIN * meeting.hit.slack;
-    let off = minus(path.x0, place);
-    dot(off, off) <= near * near && length(path.v0) * (path.duration() * meeting.time) <= near
+    let (off, fast) = (minus(lain_to(path, meeting), place), minus(path.v0, meeting.hit.velocity));
+    dot(off, off) <= near * near && length(fast) * (path.duration() * meeting.time) <= near
 }
 
 /// The slip of what has slid into a surface that curves, and is set off from it: it would otherwise rise by as much in each step for nothing, since

@@ -137,8 +137,8 @@ impl Straight<'_, '_> {
         });
 
         let x0 = self.set_off(way, hit, place, [path.during[0], during[0]]);
-        // What lies there does not creep.
-        let stays = rests && is_zero(hit.velocity) && is_zero(after) && is_zero(end);
+        // What lies there does not creep. Of what constraints have moved, speeds may show nothing that would press it on.
+        let stays = is_zero(hit.velocity) && is_zero(after) && is_zero(end);
         let x0 = if stays && length(minus(x0, path.x0)) <= LAIN * hit.slack { path.x0 } else { x0 };
         (path.x0, path.v0, path.v1, path.during) = (x0, after, end, during);
         path.pull = rests.then_some(acceleration);
