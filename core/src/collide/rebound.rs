@@ -110,8 +110,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let belt = ride.as_ref().and_then(|ride| self.belt(ride, meeting, beside, during));
         let (ride, belt) = (ride.as_ref(), belt.as_ref());
         let goes = ride.map_or(surface, |ride| ride.velocity[0]);
-        let pressed_by = |ride| -dot(seen(pressed, ride, aside(minus(before, goes), normal)), normal);
-        let pressing = belt.map_or(pressed_by(ride), |belt| max(pressed_by(ride), pressed_by(Some(belt))));
+        let pressing = pressing([ride, belt], pressed, aside(minus(before, goes), normal), normal);
         let rests = pressing > 0.0 && (incoming >= 0.0 || 2.0 * onward < RESTING * self.dt * pressing);
         let [outgoing, onward] = if rests { [0.0; 2] } else { [outgoing, onward] };
         // A particle that bounces slips along the place that it touches; one that rests goes as one with the surface.
@@ -137,9 +136,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         }
         if !rests {
             let fast = along(plus(surface, slip), normal, onward);
-            // What constraints have moved shows no force that would press it on: if the hit has left it the speed of the surface alone, it lies there.
-            let lies = is_zero(going.mean) && fast == surface && self.left_or(fast) == surface;
-            let from = if lies && has_lain(path, meeting, place) { lain_to(path, meeting) } else { beside };
+            let from =
+                if self.lies(path, meeting, [surface, fast], going.mean) { lain_to(path, meeting) } else { beside };
             let mut onward = Path::onward(from, fast, going.mean, during);
             self.lead_on(&lead, &mut onward, None);
             return onward;
@@ -148,6 +146,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let landing =
             Landing { beside, during, surface, ride, belt, incoming, came, slip, after, acceleration, friction };
         self.stay(path, meeting, &lead, landing)
+    }
+
+    /// Tells whether a hit leaves lying what constraints have moved, which shows no force that would press it on: it leaves it the speed of the surface alone.
+    fn lies(&self, path: &Path, meeting: &Meeting, [surface, fast]: [Vec3; 2], mean: Vec3) -> bool {
+        let goes_along = is_zero(mean) && fast == surface && self.left_or(fast) == surface;
+        goes_along && has_lain(path, meeting, meeting.place)
     }
 
     /// How it goes on with another velocity. What constraints have moved is driven by the velocity that they have left it.
@@ -311,6 +315,13 @@ fn answered(
     let came = along(minus(before, surface), normal, -incoming);
     let slip = plus(came, friction.answer(came, outgoing - incoming));
     [came, slip, along(plus(surface, slip), normal, outgoing)]
+}
+
+/// By how much an acceleration presses on a surface \[m/s²\], as seen from what takes something along that slips so fast: from what would hold it, or from a belt,
+/// if the surface is one for what slides.
+fn pressing([ride, belt]: [Option<&Ride>; 2], acceleration: Vec3, slip: Vec3, normal: Vec3) -> f32 {
+    let by = |ride| -dot(seen(acceleration, ride, slip), normal);
+    belt.map_or(by(ride), |belt| max(by(ride), by(Some(belt))))
 }
 
 /// An acceleration as what takes along sees it that so fast a slip goes along: without its own, and Coriolis's.
