@@ -57,21 +57,12 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
         ),
         (
             format!(
-                r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}], "run": {{"substeps": 12}},
-                "particles": [{{"position": [0.5, 0.2, 0.5], "radius": 0.1, "mass": 0.5}}],
+                r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}], "run": {{"substeps": 4}},
+                "particles": [{{"position": [0.5, 0.2, 0.5], "radius": 0.1, "mass": 20}}],
                 "cloths": [{{"form": {sheet}, "mass": 0.01, "fixed": [0, 2, 6, 8], "thickness": 0.02,
-                "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0, "damping": 0.1}}}}]}}"#
+                "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0}}}}]}}"#
             ),
-            "a.json:cloths[0].thickness: what weighs 0.5 kg sinks into it, whose points weigh 0.01 kg each, or falls through; run.substeps of 41 are enough",
-        ),
-        (
-            format!(
-                r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}], "run": {{"substeps": 12}},
-                "particles": [{{"position": [0.5, 0.2, 0.5], "radius": 0.1, "mass": 0.5}}],
-                "cloths": [{{"form": {sheet}, "mass": 0.01, "fixed": [0, 2, 6, 8], "thickness": 0.02,
-                "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0, "damping": 1000}}}}]}}"#
-            ),
-            "no sub-steps are enough for so much damping",
+            "a.json:cloths[0].thickness: what weighs 20 kg sinks into it, whose points weigh 0.01 kg each, or falls through; run.substeps of 9 are enough",
         ),
         (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
         (

@@ -111,9 +111,8 @@ impl SceneFile {
         (depth > room && heaviest.mass > lightest.mass).then(sinks)
     }
 
-    /// A remark on what weighs too much for a sheet with thickness that hangs by some of its points and that it may come to lie on: what its points are pushed by in a sub-step they take back in the
-    /// next, which the damping of the material holds up. So a body sinks deeper by its mass over that of a point times g h (h / 4 + damping) for
-    /// sub-steps of h, as measured within a factor of two, and from the thickness on through the sheet.
+    /// A remark on what weighs too much for a sheet with thickness that hangs by some of its points and that it may come to lie on: in sub-steps of h a body sinks
+    /// into it by its mass over that of a point times g h² / 4, as measured within a factor of two, and from the thickness on through it.
     fn heavy_on_cloth(&self, cloth: &Cloth) -> Option<String> {
         if cloth.fixed.is_empty() {
             return None;
@@ -123,17 +122,14 @@ impl SceneFile {
         let balls = self.particles.iter().filter(|ball| !ball.fixed && ball.radius > 0.0).map(|ball| ball.mass);
         let load = boxes.chain(balls).fold(0.0, f32::max);
         let pull = length(self.pull());
-        let damping = cloth.shell_params().map_or(0.0, |params| params.damping);
         let depth = |substeps: u32| {
             let h = self.run.dt as f32 / substeps as f32;
-            load / point * pull * h * (0.25 * h + damping)
+            0.25 * (load / point) * pull * h * h
         };
         let taken = self.run.substeps.max(self.contacts.map_or(1, |response| response.substeps()));
         let enough = (taken..=1000).find(|&substeps| !(depth(substeps) > thickness));
         let sinks = || {
-            let helps = enough.map_or("no sub-steps are enough for so much damping".into(), |n| {
-                format!("run.substeps of {n} are enough")
-            });
+            let helps = enough.map_or("it is far too much".into(), |n| format!("run.substeps of {n} are enough"));
             format!(
                 "what weighs {load} kg sinks into it, whose points weigh {point} kg each, or falls through; {helps}"
             )

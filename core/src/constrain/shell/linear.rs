@@ -13,7 +13,7 @@ use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use glam::Vec3;
 
-/// Makes all strains and folds, and adds their forces × h² to the residuals. Where particles are, how fast they go and where they were is found in
+/// Makes all strains and folds, and adds their forces × h² to the residuals. Where particles are, how fast they go and where they were left is found in
 /// the first directions, what comes of these, and the shifts, which nobody needs yet; what is not there is no number.
 pub(super) struct Linearise<'a, 'm> {
     pub(super) solver: &'a mut Solver<'m>,
@@ -29,6 +29,10 @@ impl Solver<'_> {
             for (to, &row) in to.iter_mut().zip(&**rows) {
                 *to = column.get(row as usize).copied().unwrap_or(Vec3::NAN);
             }
+        }
+        // The rate of strain is that between what it has made of them. What others move after it, it takes back in the next sub-step: that is no motion.
+        for (from, left) in self.vectors.shift.iter_mut().zip(&*self.left) {
+            *from = if left.is_finite() { *left } else { *from };
         }
         lanes::run(Linearise { solver: self });
         self.vectors.shift.fill(Vec3::ZERO);

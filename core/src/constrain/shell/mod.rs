@@ -167,7 +167,13 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         let links = take(&mut rest, finest::pattern(&room, triangles));
         let plate = take(&mut rest, plate::words(&room));
         let roll = take(&mut rest, pieces::KEPT.saturating_mul(self.counts()[0]));
-        Rest { cells, bends, graphs, links, plate, roll, last: structs(take(&mut rest, 3 * room.rows[0])) }
+        let last = structs(take(&mut rest, 3 * room.rows[0]));
+        Rest { cells, bends, graphs, links, plate, roll, last, left: structs(take(&mut rest, self.left())) }
+    }
+
+    /// The words in which it keeps where it has left its particles, if it is damped.
+    fn left(&self) -> usize {
+        if self.params.damping > 0.0 { self.particles.as_ref().len().saturating_mul(3) } else { 0 }
     }
 
     fn shape<'s>(&'s self, cells: &'s [Cell], bends: &'s [RestFold]) -> Shape<'s> {
@@ -185,7 +191,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
 
     /// Takes the shape at rest from where all are, at the first of all.
     fn learn(&self, bodies: &mut Bodies<'_>, kept: &mut [u32], work: &mut [u32]) {
-        let (Rest { cells, bends, graphs, links, plate, .. }, room) = (self.rest(kept), Room::of(self.counts()));
+        let (Rest { cells, bends, graphs, links, plate, left, .. }, room) = (self.rest(kept), Room::of(self.counts()));
         mesh::make(&room, self.triangles.as_ref(), graphs, work);
         let all = Graph::all(graphs);
         if all[0].rows() > 0 {
@@ -200,6 +206,9 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
             let row = bodies.row_of_start(*self.particles.as_ref().get(corner as usize)?)?;
             Some(bodies.position[row])
         };
+        for (left, corner) in left.iter_mut().zip(0..) {
+            *left = place(corner).unwrap_or(Vec3::NAN);
+        }
         let mut degenerate = 0;
         for (&corners, cell) in self.triangles.as_ref().iter().zip(&mut *cells) {
             *cell = Cell::NONE;
@@ -223,7 +232,7 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
 }
 
 /// All that a shell keeps behind the word that tells whose it is: its triangles and folds at rest, its graphs, how it bends, its pieces, and where it went
-/// last.
+/// last and left its particles.
 struct Rest<'m> {
     cells: &'m mut [Cell],
     bends: &'m mut [RestFold],
@@ -232,6 +241,7 @@ struct Rest<'m> {
     plate: &'m mut [u32],
     roll: &'m mut [u32],
     last: &'m mut [Vec3],
+    left: &'m mut [Vec3],
 }
 
 impl<P, T, H> Constraint for Shell<P, T, H>
@@ -251,6 +261,7 @@ where
             finest::pattern(&room, triangles),
             plate::words(&room),
             3 * room.rows[0],
+            self.left(),
             triangles.saturating_mul(KEPT[0]),
             hinges.saturating_mul(KEPT[1]),
         ]);
@@ -284,7 +295,7 @@ where
         }
         let [particles, triangles, hinges] = self.counts();
         let room = Room::of(self.counts());
-        let Rest { cells, bends, graphs, links, plate, roll, last } = self.rest(share.kept.fixed);
+        let Rest { cells, bends, graphs, links, plate, roll, last, left } = self.rest(share.kept.fixed);
         let mut rest = &mut *share.scratch;
         let strains = structs(take(&mut rest, triangles.saturating_mul(WORK[0])));
         let folds = structs(take(&mut rest, hinges.saturating_mul(WORK[1])));
@@ -311,6 +322,7 @@ where
             thin: !levels.is_empty() && levels.finest.plate.is_thin(&self.params) && self.params.bending > 0.0,
             walls,
             last,
+            left,
         };
         solver.list_walls();
         solver.meet(bodies);
@@ -319,6 +331,7 @@ where
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);
         solver.act_within(bodies, &mut roll, rest);
+        solver.leave(bodies);
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

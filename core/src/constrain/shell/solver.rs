@@ -135,9 +135,18 @@ pub(super) struct Solver<'m> {
     pub(super) walls: &'m mut [Wall],
     /// How far the particles were moved in the sub-step before; none, where there are no graphs.
     pub(super) last: &'m mut [Vec3],
+    /// Where it left the particles in the sub-step before, if it is damped \[m\].
+    pub(super) left: &'m mut [Vec3],
 }
 
 impl Solver<'_> {
+    /// Keeps where it leaves the particles.
+    pub(super) fn leave(&mut self, bodies: &Bodies<'_>) {
+        for (left, &row) in self.left.iter_mut().zip(&*self.vectors.rows) {
+            *left = bodies.position.get(row as usize).copied().unwrap_or(Vec3::NAN);
+        }
+    }
+
     /// Bending stiffness × h².
     pub(super) fn bending(&self) -> f32 {
         self.params.bending * (self.step.h * self.step.h)
