@@ -13,6 +13,9 @@ use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use glam::Vec3;
 
+/// By how many sub-steps of damping what others have moved is left out at the most: directions that turn under more of it would not let a heavy load come to rest.
+const MOST_DAMPED: f32 = 16.0;
+
 /// Makes all strains and folds, and adds their forces × h² to the residuals. Where particles are, how fast they go and where they were left is found in
 /// the first directions, what comes of these, and the shifts, which nobody needs yet; what is not there is no number.
 pub(super) struct Linearise<'a, 'm> {
@@ -31,8 +34,13 @@ impl Solver<'_> {
             }
         }
         // The rate of strain is that between what it has made of them. What others move after it, it takes back in the next sub-step: that is no motion.
-        for (from, left) in self.vectors.shift.iter_mut().zip(&*self.left) {
-            *from = if left.is_finite() { *left } else { *from };
+        let most = MOST_DAMPED * self.step.h;
+        for (from, &left) in self.vectors.shift.iter_mut().zip(&*self.left) {
+            *from = match () {
+                () if !left.is_finite() => *from,
+                () if self.step.lag <= most => left,
+                () => *from + (left - *from) * (most / self.step.lag),
+            };
         }
         lanes::run(Linearise { solver: self });
         self.vectors.shift.fill(Vec3::ZERO);
