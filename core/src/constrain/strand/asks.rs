@@ -7,8 +7,7 @@ use crate::constrain::turn::Turn;
 use crate::math::length;
 use bytemuck::Pod;
 
-/// How long an edge is \[m\] and its frame: now, and as the solution of the sub-step before has left it. What others move after that, the strand takes
-/// back in the next one: it is no motion that damping would count.
+/// How long an edge is \[m\] and its frame: now, and as the sub-step began.
 #[derive(Clone, Copy)]
 struct Seen {
     length: [f32; 2],
@@ -55,9 +54,9 @@ where
     fn seen(&self, number: usize, joints: &[Joint], begun: &[Begun]) -> Seen {
         let ends = [number, number + 1].map(|end| self.point(end));
         let [p, q] = ends.map(|end| end.row);
-        let x = &*self.bodies.position;
-        let now = x[q] - x[p] + (joints[number + 1].left - joints[number].left);
-        let before = begun[number].was;
+        let (x, x0, next) = (&*self.bodies.position, self.bodies.before[0], number + 1);
+        let now = x[q] - x[p] + (joints[next].left - joints[number].left);
+        let before = x0[q] - x0[p] + (begun[next].left - begun[number].left);
         let (lengths, turn) = ([now, before].map(length), Turn(begun[number].turn));
         let direction = before / lengths[1];
         let begun = if direction.is_finite() { bring(turn, direction) } else { turn };

@@ -181,8 +181,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             let edges = last - first - 1;
             let mut turn = None;
             for (number, joint) in joints[..edges].iter_mut().enumerate().rev() {
-                joint.was = way(number);
-                joint.length = length(joint.was);
+                joint.length = length(way(number));
                 let is_there = [number, number + 1].into_iter().all(|end| row(end).is_some());
                 degenerate += u64::from(is_there && !(joint.length > 0.0 && joint.length < f32::INFINITY));
                 let direction = way(number) / joint.length;
@@ -323,7 +322,6 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let course = Course { joints, before: begun, work };
                 bounded(lane, masses[lane]).keep_within(limits, bodies, course, &mut purse);
             }
-            leave(bodies, rows, joints);
         }
     }
 }
@@ -338,14 +336,6 @@ fn follow_velocities(bodies: &mut Bodies<'_>, piece: &Piece, rows: &[u32], joint
         }
         let left = joint.left - bodies.lead(row as usize, h);
         joint.left = if piece.keeps_rounding() && left.is_finite() { left } else { Vec3::ZERO };
-    }
-}
-
-/// Keeps the ways from point to point as they are left.
-fn leave(bodies: &Bodies<'_>, rows: &[u32], joints: &mut [Joint]) {
-    for (number, ends) in rows.windows(2).enumerate() {
-        let [from, to] = [ends[0], ends[1]].map(|row| bodies.position[row as usize]);
-        joints[number].was = to - from + (joints[number + 1].left - joints[number].left);
     }
 }
 
