@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::ops::RangeInclusive;
 
 const G: f32 = 9.81;
-/// What lies there.
+/// The thing that lies there.
 const KINDS: [&str; 9] = ["box", "tall box", "stack", "bridge", "prism", "sleeper", "cluster", "strand", "jelly"];
 
 /// A box of a size \[m\] in a scene file.

@@ -13,7 +13,7 @@ use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use glam::Vec3;
 
-/// By how many sub-steps of damping what others have moved is left out at the most: directions that turn under more of it would not let a heavy load come to rest.
+/// The sub-steps of damping for which what others have moved is left out at the most: directions that turn under more of it would not let a heavy load come to rest.
 const MOST_DAMPED: f32 = 16.0;
 
 /// Makes all strains and folds, and adds their forces × h² to the residuals. Where particles are, how fast they go and where they were left is found in
