@@ -421,7 +421,7 @@ impl Observer for Registrar {
 
 /// On hosts.
 #[test]
-fn only_who_listens_is_told_of_births_and_deaths_and_nothing_else_changes() {
+fn who_listens_is_told_of_births_and_deaths_and_nothing_else_changes() {
     for (number, &method) in Method::ALL.iter().enumerate() {
         let substeps = [1, 3, 10][number % 3];
         let mut fountain =
@@ -453,8 +453,9 @@ fn only_who_listens_is_told_of_births_and_deaths_and_nothing_else_changes() {
             let (born, died) = (totals.born, totals.died.lifetime);
             assert!(born > 100 && died > 20, "{name}: {totals:?}");
             assert_eq!(system.hash(), unseen.hash(), "{name}");
-            let told = if attention == Attention::Nothing { [0, 0] } else { [born, died] };
-            assert_eq!([registrar.births, registrar.deaths], told, "{name}");
+            // Whoever wants to know nothing may be told all the same, as programs are that should be small.
+            let told = [registrar.births, registrar.deaths];
+            assert!(told == [born, died] || told == [0, 0] && attention == Attention::Nothing, "{name}: {told:?}");
         }
     }
 }

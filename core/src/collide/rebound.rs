@@ -150,8 +150,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 
     /// Tells whether a hit leaves lying what constraints have moved, which shows no force that would press it on: it leaves it the speed of the surface alone.
     fn lies(&self, path: &Path, meeting: &Meeting, [surface, fast]: [Vec3; 2], mean: Vec3) -> bool {
-        let goes_along = is_zero(mean) && fast == surface && self.left_or(fast) == surface;
-        goes_along && has_lain(path, meeting, meeting.place)
+        let is_left = self.left.as_deref().is_some_and(|left| *left == surface);
+        is_left && is_zero(mean) && fast == surface && has_lain(path, meeting, meeting.place)
     }
 
     /// How it goes on with another velocity. What constraints have moved is driven by the velocity that they have left it.

@@ -203,7 +203,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     }
 
     /// The velocity that constraints have left it, after all hits; that of its path, if they have not moved it.
-    pub(super) fn left_or(&self, of_path: Vec3) -> Vec3 {
+    fn left_or(&self, of_path: Vec3) -> Vec3 {
         self.left.as_deref().copied().unwrap_or(of_path)
     }
 
