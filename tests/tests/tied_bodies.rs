@@ -397,40 +397,75 @@ fn strands_that_are_attached_by_nothing_are_remarked_on() {
     );
 }
 
+/// How far a load of so many newtons a metre stretches a sheet, by Saint-Venant and Kirchhoff: k (1 + e) (e + e² / 2).
+fn strain_under(pull: f64, stretch: f64) -> f64 {
+    let (mut least, mut most) = (0.0f64, 10.0);
+    for _ in 0..60 {
+        let e = 0.5 * (least + most);
+        let bears = stretch * (1.0 + e) * (e + 0.5 * e * e);
+        *if bears < pull { &mut least } else { &mut most } = e;
+    }
+    least
+}
+
+/// How low what hangs from something of 1 m holds a box that is tied to it, where drag has brought it to rest.
+fn low(hangs: &str, of: &str, mass: f64, substeps: u32, method: Method) -> f64 {
+    let text = format!(
+        r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}, {{"drag": {{}}}}], {hangs},
+        "boxes": [{{"sides": [0.2, 0.1, 0.1], "mass": {mass}, "position": [0, -1.05, 0], "drag": {}}}],
+        "ties": [{{"of": {of}, "to": {{"box": 0}}}}]}}"#,
+        2.0 * mass,
+    );
+    let model = model(&text).unwrap();
+    let (x, _) = after(&model, 4.0, substeps, method);
+    // What hangs comes first or last, and the box has eight corners.
+    let of_box = if of.contains("cloth") { x.len() - 8..x.len() } else { 0..8 };
+    let others = x.iter().enumerate().filter(|(i, _)| !of_box.contains(i)).map(|(_, x)| -f64::from(x.y));
+    others.fold(0.0, f64::max)
+}
+
 /// How damped a sheet is does not count where all is at rest: with the load in each sub-step it had been drawn out by as much more.
 #[test]
 fn damped_sheets_bear_what_is_tied_to_them_as_their_material_says() {
     for (number, (stretch, mass)) in [(200.0f64, 1.0f64), (200.0, 0.4), (2000.0, 1.0)].into_iter().enumerate() {
-        for (k, damping) in [0.003, 0.008, 0.016].into_iter().enumerate() {
+        for (k, damping) in [0.004, 0.05, 0.4].into_iter().enumerate() {
             let ways = if cfg!(debug_assertions) { &[16][..usize::from(number == k)] } else { &[16, 40] };
             for &substeps in ways {
-                let text = format!(
-                    r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}, {{"drag": {{}}}}],
-                    "cloths": [{{"form": {{"sheet": {{"corner": [-0.1, 0, 0], "sides": [[0.2, 0, 0], [0, -1, 0]], "cells": [2, 10]}}}},
+                let hangs = format!(
+                    r#""cloths": [{{"form": {{"sheet": {{"corner": [-0.1, 0, 0], "sides": [[0.2, 0, 0], [0, -1, 0]], "cells": [2, 10]}}}},
                     "density": 0.2, "fixed": [0, 1, 2],
-                    "shell": {{"stretch": [{stretch}, {stretch}], "shear": {}, "bending": 1e-4, "damping": {damping}}}}}],
-                    "boxes": [{{"sides": [0.2, 0.1, 0.1], "mass": {mass}, "position": [0, -1.05, 0], "drag": {}}}],
-                    "ties": [{{"of": {{"cloth": 0}}, "points": [30, 31, 32], "to": {{"box": 0}}}}]}}"#,
+                    "shell": {{"stretch": [{stretch}, {stretch}], "shear": {}, "bending": 1e-4, "damping": {damping}}}}}]"#,
                     stretch / 3.0,
-                    2.0 * mass,
                 );
                 let method = [Method::Symplectic, Method::Verlet, Method::Implicit][(number + k) % 3];
-                let (x, _) = after(&model(&text).unwrap(), 4.0, substeps, method);
-                // The cloth comes first.
-                let low = x[30..33].iter().map(|x| -f64::from(x.y)).sum::<f64>() / 3.0;
-                // Saint-Venant and Kirchhoff: k (1 + e) (e + e² / 2) a metre, and half of the sheet's own weight.
-                let pull = (mass + 0.02) * 9.81 / 0.2;
-                let (mut least, mut most) = (0.0f64, 10.0);
-                for _ in 0..60 {
-                    let e = 0.5 * (least + most);
-                    let bears = stretch * (1.0 + e) * (e + 0.5 * e * e);
-                    *if bears < pull { &mut least } else { &mut most } = e;
-                }
-                let off = low - 1.0 - least;
-                assert!(
-                    off.abs() < 0.05,
-                    "{stretch} N/m, {mass} kg, {damping} s, {method} in {substeps}: {low}, off by {off}"
+                let low = low(&hangs, r#"{"cloth": 0}, "points": [30, 31, 32]"#, mass, substeps, method);
+                // Half of the sheet's own weight is beneath its middle.
+                let off = low - 1.0 - strain_under((mass + 0.02) * 9.81 / 0.2, stretch);
+                let case = format!("{stretch} N/m, {mass} kg, {damping} s, {method} in {substeps}");
+                assert!(off.abs() < 0.05, "{case}: {low}, off by {off}");
+            }
+        }
+    }
+}
+
+/// The same of strands.
+#[test]
+fn damped_strands_bear_what_is_tied_to_them_as_their_material_says() {
+    for (number, (stretch, mass)) in [(40.0f64, 1.0f64), (40.0, 0.3), (4000.0, 1.0)].into_iter().enumerate() {
+        for (k, damping) in [0.0, 0.004, 0.05, 0.4].into_iter().enumerate() {
+            for &substeps in if cfg!(debug_assertions) { &[16][..] } else { &[16, 60] } {
+                let radius = 0.005f64;
+                let area = core::f64::consts::PI * radius * radius;
+                let hangs = format!(
+                    r#""strands": [{{"form": {{"curve": [[0, 0, 0], [0, -1, 0]]}}, "segments": 10, "radius": {radius}, "young": {},
+                    "density": 500, "fixed": [0], "damping": {damping}}}]"#,
+                    stretch / area,
                 );
+                let method = [Method::Symplectic, Method::Verlet, Method::Implicit][(number + k) % 3];
+                let low = low(&hangs, r#"{"strand": 0}, "points": [10]"#, mass, substeps, method);
+                let off = low - 1.0 - (mass + 250.0 * area) * 9.81 / stretch;
+                let case = format!("{stretch} N, {mass} kg, {damping} s, {method} in {substeps}");
+                assert!(off.abs() < 0.01, "{case}: {low}, off by {off}");
             }
         }
     }

@@ -33,8 +33,8 @@ const NOTES: [&str; 8] = [
 const HELD: [&str; 3] = [
     "Constraints: their stiffness, their fastest oscillation, were it alone, and by how much their own weight stretches them, \
      were they hung from what is fixed. A sub-step damps what swings in less than 2π of it, as implicit Euler does.",
-    "Ropes, clusters and sheets are solved as a whole, and are at rest what they are by their numbers. What others tie to a damped strand, \
-     or to a sheet damped for more than sixteen sub-steps, draws it out farther: by damping times g h, times the load over what the points weigh that bear it. Distances are met one \
+    "Ropes, clusters and sheets are solved as a whole, and are at rest what they are by their numbers. What is damped is drawn out farther by what others tie to it \
+     where that moves its points by more than an eighth of an edge in a sub-step: by g h² times the load over what the points weigh that bear it. Distances are met one \
      after the other: each pulls at those before it once more, by h²/m times its pull. 1 % with: the sub-step that leaves so much.",
     "A hit: what falls freely onto the scenery beneath it is stretched by up to 1.5 times its speed over that of waves of stretch in it, √(stretch / density), \
      and by up to 5 % more for each edge's length that it goes in a sub-step, 20 % with friction. All are measured; where cloth crumples by single cells it may be \

@@ -16,6 +16,7 @@ mod inertia;
 #[cfg(feature = "alloc")]
 mod kind;
 mod moved;
+mod rate;
 mod rigid;
 mod rope;
 mod shape_matching;

@@ -9,12 +9,11 @@ use super::resist::{columns, spread};
 use super::solver::{Solver, Vectors as Columns};
 use super::step::Step;
 use super::{Bodies, ShellParams};
+use crate::constrain::rate::braked_from;
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
+use crate::math::sqrt;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use glam::Vec3;
-
-/// The sub-steps of damping for which what others have moved is left out at the most: directions that turn under more of it would not let a heavy load come to rest.
-const MOST_DAMPED: f32 = 16.0;
 
 /// Makes all strains and folds, and adds their forces × h² to the residuals. Where particles are, how fast they go and where they were left is found in
 /// the first directions, what comes of these, and the shifts, which nobody needs yet; what is not there is no number.
@@ -33,17 +32,20 @@ impl Solver<'_> {
                 *to = column.get(row as usize).copied().unwrap_or(Vec3::NAN);
             }
         }
-        // The rate of strain is that between what it has made of them. What others move after it, it takes back in the next sub-step: that is no motion.
-        let most = MOST_DAMPED * self.step.h;
-        for (from, &left) in self.vectors.shift.iter_mut().zip(&*self.left) {
-            *from = match () {
-                () if !left.is_finite() => *from,
-                () if self.step.lag <= most => left,
-                () => *from + (left - *from) * (most / self.step.lag),
-            };
+        if !self.left.is_empty() {
+            let edge = self.edge();
+            for (from, &left) in self.vectors.shift.iter_mut().zip(&*self.left) {
+                *from = braked_from(*from, left, edge);
+            }
         }
         lanes::run(Linearise { solver: self });
         self.vectors.shift.fill(Vec3::ZERO);
+    }
+
+    /// How long its edges are at rest, about \[m\].
+    fn edge(&self) -> f32 {
+        let area: f32 = self.cells.iter().map(|cell| cell.area).sum();
+        sqrt(2.0 * area / self.cells.len() as f32)
     }
 }
 

@@ -3,11 +3,13 @@
 use super::frame::{bring, strain};
 use super::joint::{Begun, Joint};
 use super::piece::{BEND, EQUATIONS, PULL, Piece, Step, TURN, Writer};
+use crate::constrain::rate::braked_from;
 use crate::constrain::turn::Turn;
 use crate::math::length;
 use bytemuck::Pod;
 
-/// How long an edge is \[m\] and its frame: now, and as the sub-step began.
+/// How long an edge is \[m\] and its frame: now, and as the solution of the sub-step before has left it. What others move after that, the strand takes
+/// back in the next one: it is no motion that damping would count.
 #[derive(Clone, Copy)]
 struct Seen {
     length: [f32; 2],
@@ -57,6 +59,7 @@ where
         let (x, x0, next) = (&*self.bodies.position, self.bodies.before[0], number + 1);
         let now = x[q] - x[p] + (joints[next].left - joints[number].left);
         let before = x0[q] - x0[p] + (begun[next].left - begun[number].left);
+        let before = braked_from(before, begun[number].was, joints[number].length);
         let (lengths, turn) = ([now, before].map(length), Turn(begun[number].turn));
         let direction = before / lengths[1];
         let begun = if direction.is_finite() { bring(turn, direction) } else { turn };

@@ -16,6 +16,8 @@ pub(super) struct Joint {
     pub(super) rest: Vec3,
     /// How far the point is from where its row says, since rounding has not let it get there \[m\]: nothing where nothing holds its strand, or its ends are turned.
     pub(super) left: Vec3,
+    /// The way to the next point as the last sub-step's solution has left it \[m\].
+    pub(super) was: Vec3,
 }
 
 /// A joint as a sub-step began, as far as that is remembered.
@@ -26,12 +28,14 @@ pub(super) struct Begun {
     pub(super) turn: [f32; 4],
     /// The part of the point's way that rounding had left \[m\].
     pub(super) left: Vec3,
+    /// The way to the next point as the last solution has left it \[m\].
+    pub(super) was: Vec3,
 }
 
 impl Joint {
     /// The part of it that is remembered.
     pub(super) fn begun(&self) -> Begun {
-        Begun { turn: self.turn, left: self.left }
+        Begun { turn: self.turn, left: self.left, was: self.was }
     }
 }
 

@@ -43,7 +43,8 @@ use piece::{EQUATIONS, Piece, Step, TURN, Writer, act};
 /// Elastic Rods", SIGGRAPH 2008): ½ Σ (g − g₀)ᵀ B (g − g₀) / l, with g = 2 tan(φ/2) along the axis, and l half of each edge beside.
 ///
 /// Stretching, bending and twisting of a strand are solved as one, for its places at the sub-step's end: forces are those of
-/// the material whatever the sub-steps. Single precision sets a limit: where points of mass m are l apart, bending is off by up to a
+/// the material whatever the sub-steps, but where it is damped and a tie moves its points by more than an eighth of an edge in one: the damping of what takes
+/// them back adds to the load. Single precision sets a limit: where points of mass m are l apart, bending is off by up to a
 /// share of 1e-6 E I h²/(m l³) in a sub-step h, less than 0.01 % for hair of 1 cm; longer edges and shorter sub-steps lessen it. The
 /// system has a narrow band and is solved directly, so that the time that it takes grows with the number of points alone; several
 /// strands are solved eight at once: in one step of Newton's method and, where that turns no edge far, a second one. Forces act along the directions of
@@ -181,7 +182,8 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             let edges = last - first - 1;
             let mut turn = None;
             for (number, joint) in joints[..edges].iter_mut().enumerate().rev() {
-                joint.length = length(way(number));
+                joint.was = way(number);
+                joint.length = length(joint.was);
                 let is_there = [number, number + 1].into_iter().all(|end| row(end).is_some());
                 degenerate += u64::from(is_there && !(joint.length > 0.0 && joint.length < f32::INFINITY));
                 let direction = way(number) / joint.length;
@@ -322,6 +324,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
                 let course = Course { joints, before: begun, work };
                 bounded(lane, masses[lane]).keep_within(limits, bodies, course, &mut purse);
             }
+            leave(bodies, rows, joints);
         }
     }
 }
@@ -336,6 +339,14 @@ fn follow_velocities(bodies: &mut Bodies<'_>, piece: &Piece, rows: &[u32], joint
         }
         let left = joint.left - bodies.lead(row as usize, h);
         joint.left = if piece.keeps_rounding() && left.is_finite() { left } else { Vec3::ZERO };
+    }
+}
+
+/// Keeps the ways from point to point as they are left.
+fn leave(bodies: &Bodies<'_>, rows: &[u32], joints: &mut [Joint]) {
+    for (number, ends) in rows.windows(2).enumerate() {
+        let [from, to] = [ends[0], ends[1]].map(|row| bodies.position[row as usize]);
+        joints[number].was = to - from + (joints[number + 1].left - joints[number].left);
     }
 }
 
