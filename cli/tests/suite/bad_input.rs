@@ -121,6 +121,7 @@ fn json_that_is_wrong() {
     let emitter = |rest: &str| format!(r#"{{"emitters": [{{{sphere}, {rest}}}]}}"#);
     let emitters = [
         ("\"rate\": -1", "a.json:emitters[0].rate: "),
+        ("\"burst\": {\"count\": 1, \"every\": -1}", "a.json:emitters[0].burst.every: "),
         ("\"rate\": \"fast\"", "a.json:1:"),
         ("\"wind\": 1", "a.json:1:"),
         ("\"speed\": null", "a.json:1:"),

@@ -42,6 +42,17 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             "a.json:particles[1].drag: 2 brakes nobody",
         ),
         (
+            r#"{"particles": [{"drag": 1}], "forces": [{"drag": {}}, {"wind": {"field": [{"uniform": {"velocity": [1, 0, 0]}}]}}]}"#.into(),
+            "a.json:forces[0].drag: wind brakes by the same coefficients",
+        ),
+        (
+            r#"{"room": {"low": [-1, -1, -1], "sides": [2, 2, 2]}, "scenery": [
+                {"shape": {"box": {"min": [-2, -2, -2], "max": [2, -0.9, 2]}}},
+                {"shape": {"box": {"min": [-1.2, -1, -1], "max": [-0.6, 1, 1]}}}]}"#
+                .into(),
+            "a.json:scenery[1].shape: it reaches out of the room along x, and does not act through its sides",
+        ),
+        (
             r#"{"forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}], "boxes": [
                 {"sides": [0.2, 0.2, 0.2], "mass": 1, "position": [0, 0.1, 0]},
                 {"sides": [0.2, 0.2, 0.2], "mass": 10, "position": [0, 0.3, 0]}]}"#
@@ -62,7 +73,16 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
                 "cloths": [{{"form": {sheet}, "mass": 0.01, "fixed": [0, 2, 6, 8], "thickness": 0.02,
                 "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0}}}}]}}"#
             ),
-            "a.json:cloths[0].thickness: what weighs 20 kg sinks into it, whose points weigh 0.01 kg each, or falls through; run.substeps of 9 are enough",
+            "a.json:cloths[0].thickness: what weighs 20 kg sinks into it, whose points weigh 0.0011111111 kg each, or falls through; run.substeps of 25 are enough",
+        ),
+        (
+            format!(
+                r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}], "run": {{"substeps": 4}}, "cloths": [
+                {{"form": {sheet}, "mass": 5, "thickness": 0.02, "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0}}}},
+                {{"form": {sheet}, "mass": 0.2, "fixed": [0, 2, 6, 8], "thickness": 0.02,
+                "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0}}}}]}}"#
+            ),
+            "a.json:cloths[1].thickness: a sheet whose points weigh 0.5555556 kg sinks into it",
         ),
         (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
         (

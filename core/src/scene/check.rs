@@ -184,7 +184,8 @@ impl SceneFile {
             ));
         }
         if let Some(burst) = &emitter.burst {
-            finite(&format!("{at}.burst"), &[burst.at, burst.every])?;
+            finite(&format!("{at}.burst.at"), &[burst.at])?;
+            zero_or_more(&format!("{at}.burst.every"), burst.every)?;
         }
         if matches!(emitter.shape, Shape::Plane(_)) {
             return Err(SceneError::value(format!("{at}.shape"), "a plane is infinite and cannot give birth"));

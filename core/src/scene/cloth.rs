@@ -273,7 +273,8 @@ impl Cloth {
         let Form::Sheet(sheet) = &self.form else { return None };
         let [a, b] = sheet.sides;
         let area = length(a.cross(b));
-        Some(self.density.map_or(self.mass, |density| density * area / self.count().unwrap_or(1) as f32))
+        let whole = self.by_area().map_or(self.mass, |density| density * area);
+        Some(whole / self.count().unwrap_or(1).max(1) as f32)
     }
 
     /// What it is made of, if it is a shell.

@@ -1,12 +1,12 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::{Boxes, Cloth, Cord, Growth, Response, Run, SceneFile, SoftBody, Tuft};
+use super::{Boxes, Cloth, Cord, Growth, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::{ForceKind, Friction};
 use crate::math::{length, sqrt};
 use crate::reap::ReaperKind;
-use crate::shape::Shape;
+use crate::shape::{Aabb, Shape, Surface};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -66,8 +66,15 @@ impl SceneFile {
             let friction = material.contact.friction.unwrap_or(Friction::NONE);
             add(format_args!("materials[{i}].contact.friction.static"), odd_friction(friction));
         }
+        for (i, item) in self.scenery.iter().enumerate() {
+            add(format_args!("scenery[{i}].shape"), self.reaches_out(item));
+        }
         self.add_idle(&mut add);
         self.add_unread(&mut add);
+        if let Some(i) = self.doubled_drag() {
+            let twice = "wind brakes by the same coefficients, as seen from the moving air: both together brake twice; leave this one out, or give the wind a coefficient";
+            add(format_args!("forces[{i}].drag"), Some(twice.into()));
+        }
         remarks
     }
 
@@ -111,8 +118,9 @@ impl SceneFile {
         (depth > room && heaviest.mass > lightest.mass).then(sinks)
     }
 
-    /// A remark on what weighs too much for a sheet with thickness that hangs by some of its points and that it may come to lie on: in sub-steps of h a body sinks
-    /// into it by its mass over that of a point times g h² / 4, as measured within a factor of two, and from the thickness on through it.
+    /// A remark on what weighs too much for a sheet with thickness that hangs by some of its points and that it may come to lie on: in sub-steps of h it sinks
+    /// into it by its mass over that of a point times g h² / 4, as measured within a factor of two, a body through it from the thickness on, the points of
+    /// another sheet, which find the way between its own, from a 32nd of that.
     fn heavy_on_cloth(&self, cloth: &Cloth) -> Option<String> {
         if cloth.fixed.is_empty() {
             return None;
@@ -120,21 +128,42 @@ impl SceneFile {
         let (thickness, point) = (cloth.thickness.filter(|&thickness| thickness > 0.0)?, cloth.point_mass()?);
         let boxes = self.boxes.iter().filter(|boxes| !boxes.fixed).map(|boxes| boxes.mass);
         let balls = self.particles.iter().filter(|ball| !ball.fixed && ball.radius > 0.0).map(|ball| ball.mass);
-        let load = boxes.chain(balls).fold(0.0, f32::max);
+        let others = self.cloths.iter().filter(|other| other.fixed.is_empty() && other.thickness.is_some());
+        let points = others.filter_map(Cloth::point_mass).filter(|&other| other > point);
+        let [body, sheet] = [boxes.chain(balls).fold(0.0, f32::max), points.fold(0.0, f32::max)];
         let pull = length(self.pull());
-        let depth = |substeps: u32| {
+        let depth = |load: f32, substeps: u32| {
             let h = self.run.dt as f32 / substeps as f32;
             0.25 * (load / point) * pull * h * h
         };
         let taken = self.run.substeps.max(self.contacts.map_or(1, |response| response.substeps()));
-        let enough = (taken..=1000).find(|&substeps| !(depth(substeps) > thickness));
-        let sinks = || {
-            let helps = enough.map_or("it is far too much".into(), |n| format!("run.substeps of {n} are enough"));
-            format!(
-                "what weighs {load} kg sinks into it, whose points weigh {point} kg each, or falls through; {helps}"
-            )
-        };
-        (enough != Some(taken)).then(sinks)
+        let mut sinks = [(body, 1.0, "what weighs"), (sheet, 1.0 / 32.0, "a sheet whose points weigh")].into_iter();
+        sinks.find_map(|(load, share, what)| {
+            let enough = (taken..=1000).find(|&substeps| !(depth(load, substeps) > share * thickness));
+            let says = || {
+                let helps = enough.map_or("it is far too much".into(), |n| format!("run.substeps of {n} are enough"));
+                format!("{what} {load} kg sinks into it, whose points weigh {point} kg each, or falls through; {helps}")
+            };
+            (enough != Some(taken)).then(says)
+        })
+    }
+
+    /// A remark on what reaches out of the room through one side and not through the opposite one, where it would come in again.
+    fn reaches_out(&self, item: &Item) -> Option<String> {
+        let stands = item.group.is_none() && item.motion.is_none();
+        let Aabb { min, max } = stands.then(|| finite_bounds(&item.shape))??;
+        let PeriodicRoom { low, sides } = self.room?;
+        let names = ["x", "y", "z"].into_iter().zip(min.to_array().into_iter().zip(max.to_array()));
+        let mut axes = names.zip(low.into_iter().zip(sides));
+        let (name, _) = axes
+            .find(|&((_, (min, max)), (low, side))| {
+                let touches = side > 0.0 && max > low && min < low + side;
+                touches && (min < low) != (max > low + side) && max - min < side
+            })?
+            .0;
+        Some(format!(
+            "it reaches out of the room along {name}, and does not act through its sides; put another one where it comes in again"
+        ))
     }
 
     /// The sum of all gravity \[m/s²\].
@@ -249,6 +278,13 @@ impl SceneFile {
         look("boxes", &mut self.boxes.iter().map(|boxes| boxes.drag));
     }
 
+    /// The drag in still air that acts beside a wind on the same coefficients, by its place in the list of forces.
+    fn doubled_drag(&self) -> Option<usize> {
+        let blows = |force: &ForceKind| matches!(force, ForceKind::Wind(wind) if wind.coefficient.is_none());
+        let drag = self.forces.iter().position(|force| matches!(force, ForceKind::Drag(_)))?;
+        self.forces.iter().any(blows).then_some(drag)
+    }
+
     /// Tells whether strands turn an end, root or tip, that is neither held nor clamped in any of them: one of the two particles there, of the file's
     /// own, is not fixed.
     fn is_idly_turned(&self, strands: &Strands<Vec<u32>, Vec<u32>>, end: usize) -> bool {
@@ -261,6 +297,20 @@ impl SceneFile {
             edge.iter().any(is_free)
         };
         strands.turning[end] != 0.0 && !strands.held[end] && strands.strands().all(is_loose)
+    }
+}
+
+/// The bounds of a shape that needs no file and is finite.
+fn finite_bounds(shape: &Shape<String>) -> Option<Aabb> {
+    match shape {
+        Shape::Box(cuboid) => Some(cuboid.bounds()),
+        Shape::Circle(disc) => Some(disc.bounds()),
+        Shape::Sphere(sphere) => Some(sphere.bounds()),
+        Shape::Cylinder(cylinder) => Some(cylinder.bounds()),
+        Shape::Cone(cone) => Some(cone.bounds()),
+        Shape::Capsule(capsule) => Some(capsule.bounds()),
+        Shape::Triangle(triangle) => Some(triangle.bounds()),
+        Shape::Mesh(_) | Shape::Line(_) | Shape::Plane(_) | Shape::HeightField(_) => None,
     }
 }
 
