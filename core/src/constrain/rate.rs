@@ -12,6 +12,6 @@ const LITTLE: f32 = 1.0 / 8.0;
 /// the end nothing, nor where nothing had been left.
 pub(super) fn braked_from(begun: Vec3, left: Vec3, edge: f32) -> Vec3 {
     let others = begun - left;
-    let share = min(2.0 - length(others) / (LITTLE * edge), 1.0);
-    if share > 0.0 { begun - others * share } else { begun }
+    let share = 2.0 - length(others) / (LITTLE * edge);
+    if share > 0.0 { begun - others * min(share, 1.0) } else { begun }
 }
