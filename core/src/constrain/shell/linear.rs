@@ -9,9 +9,8 @@ use super::resist::{columns, spread};
 use super::solver::{Solver, Vectors as Columns};
 use super::step::Step;
 use super::{Bodies, ShellParams};
-use crate::constrain::rate::braked_from;
+use crate::constrain::rate::{all_braked_from, braked_from};
 use crate::lanes::{self, Eight, Kernel, LANES, Vectors};
-use crate::math::sqrt;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use glam::Vec3;
 
@@ -32,20 +31,8 @@ impl Solver<'_> {
                 *to = column.get(row as usize).copied().unwrap_or(Vec3::NAN);
             }
         }
-        if !self.left.is_empty() {
-            let edge = self.edge();
-            for (from, &left) in self.vectors.shift.iter_mut().zip(&*self.left) {
-                *from = braked_from(*from, left, edge);
-            }
-        }
         lanes::run(Linearise { solver: self });
         self.vectors.shift.fill(Vec3::ZERO);
-    }
-
-    /// How long its edges are at rest, about \[m\].
-    fn edge(&self) -> f32 {
-        let area: f32 = self.cells.iter().map(|cell| cell.area).sum();
-        sqrt(2.0 * area / self.cells.len() as f32)
     }
 }
 
@@ -85,11 +72,16 @@ impl Linearise<'_, '_> {
         [p, q, shift]
     }
 
-    /// From one particle to another: now, along what forces act, and as it was.
+    /// From one particle to others: now, along what forces act, and as it was.
     #[cfg_attr(not(one_by_one), inline(always))]
-    fn ways(&self, a: usize, b: usize) -> [Vec3; 3] {
-        let ([x, v, x0], h) = (self.columns(), self.solver.step.h);
-        [x[b] - x[a], (x[b] - x[a]) - (v[b] - v[a]) * h, x0[b] - x0[a]]
+    fn ways<const N: usize>(&self, from: usize, to: [usize; N]) -> [[Vec3; N]; 3] {
+        let ([x, v, x0], left, h) = (self.columns(), &*self.solver.left, self.solver.step.h);
+        let between = |column: &[Vec3]| to.map(|to| column[to] - column[from]);
+        let (now, speed, mut before) = (between(x), between(v), between(x0));
+        if !left.is_empty() {
+            before = braked_from(before, between(left));
+        }
+        [now, core::array::from_fn(|i| now[i] - speed[i] * h), before]
     }
 
     fn strain(&mut self, i: usize) {
@@ -97,9 +89,7 @@ impl Linearise<'_, '_> {
         let mut strain = Strain::NONE;
         if self.solver.vectors.living(corners).is_some() {
             let [a, b, c] = corners.map(|corner| corner as usize);
-            let (e, f) = (self.ways(a, b), self.ways(a, c));
-            let edges = [0, 1, 2].map(|i| [e[i], f[i]]);
-            let (now, push) = Strain::of(cell, self.solver.params, &self.solver.step, edges);
+            let (now, push) = Strain::of(cell, self.solver.params, &self.solver.step, self.ways(a, [b, c]));
             strain = now;
             add_pair(self.solver.vectors.r, corners, push);
         }
@@ -113,8 +103,7 @@ impl Linearise<'_, '_> {
         let mut fold = Fold::NONE;
         if self.solver.vectors.living(hinge.corners()).is_some() {
             let [a, b, c, d] = hinge.corners().map(|corner| corner as usize);
-            let (e, f, g) = (self.ways(a, b), self.ways(a, c), self.ways(a, d));
-            let (now, open) = Fold::of(bend, &self.solver.step, [0, 1, 2].map(|i| [e[i], f[i], g[i]]));
+            let (now, open) = Fold::of(bend, &self.solver.step, self.ways(a, [b, c, d]));
             fold = now;
             curve(self.solver.strains, hinge, bend, open);
         }
@@ -147,13 +136,15 @@ impl Linearise<'_, '_> {
         let ([x, v, x0], h) = (self.columns(), like.all(self.solver.step.h));
         let mut now = gathered::<F, N>(like, x, corners)?;
         let (mut speed, mut before) = (gathered::<F, N>(like, v, corners)?, gathered::<F, N>(like, x0, corners)?);
-        let mut along = now;
         for column in [&mut now, &mut speed, &mut before] {
-            let first = column[0];
-            for to in column {
-                *to = *to - first;
-            }
+            from_first(column);
         }
+        if !self.solver.left.is_empty() {
+            let mut left = gathered::<F, N>(like, self.solver.left, corners)?;
+            from_first(&mut left);
+            before = all_braked_from(like, before, left);
+        }
+        let mut along = now;
         for ((along, &now), &speed) in along.iter_mut().zip(&now).zip(&speed) {
             *along = now - speed * h;
         }
@@ -243,6 +234,15 @@ impl Linearise<'_, '_> {
             }
         }
         true
+    }
+}
+
+/// Makes places ways from the first.
+#[inline(always)]
+fn from_first<F: Eight>(places: &mut [Vectors<F>]) {
+    let first = places[0];
+    for place in places {
+        *place = *place - first;
     }
 }
 

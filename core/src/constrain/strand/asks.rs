@@ -59,7 +59,7 @@ where
         let (x, x0, next) = (&*self.bodies.position, self.bodies.before[0], number + 1);
         let now = x[q] - x[p] + (joints[next].left - joints[number].left);
         let before = x0[q] - x0[p] + (begun[next].left - begun[number].left);
-        let before = braked_from(before, begun[number].was, joints[number].length);
+        let [before] = braked_from([before], [begun[number].was]);
         let (lengths, turn) = ([now, before].map(length), Turn(begun[number].turn));
         let direction = before / lengths[1];
         let begun = if direction.is_finite() { bring(turn, direction) } else { turn };
