@@ -193,7 +193,7 @@ fn a_tight_wedge_reaches_the_cap_and_holds() {
             Particle { position, velocity, elasticity: [1.0, 0.5, 0.0][i % 3], ..Particle::REST }
         })
         .collect();
-    let scene = Scene { start: &start, colliders: &wedge, ..Scene::EMPTY };
+    let scene = Scene { start: &start, colliders: &wedge, max_bounces: 8, ..Scene::EMPTY };
     let mut system = started(&scene, start.len(), 0);
     for i in 1..=60 {
         let report = system.step(&scene, Time::frame(i, 60) - system.time());

@@ -429,9 +429,7 @@ fn low(hangs: &str, of: &str, mass: f64, substeps: u32, method: Method) -> f64 {
 fn damped_sheets_bear_what_is_tied_to_them_as_their_material_says() {
     for (number, (stretch, mass)) in [(200.0f64, 1.0f64), (200.0, 0.4), (2000.0, 1.0)].into_iter().enumerate() {
         for (k, damping) in [0.004, 0.05, 0.4].into_iter().enumerate() {
-            // What is stiff and damped for long hangs up to 13 cm too low in 16 to 30 sub-steps.
-            let few = if stretch * damping > 400.0 { 40 } else { 20 };
-            let ways = if cfg!(debug_assertions) { &[few][..usize::from(number == k)] } else { &[few, 2 * few] };
+            let ways = if cfg!(debug_assertions) { &[12][..usize::from(number == k)] } else { &[12, 20, 40] };
             for &substeps in ways {
                 let hangs = format!(
                     r#""cloths": [{{"form": {{"sheet": {{"corner": [-0.1, 0, 0], "sides": [[0.2, 0, 0], [0, -1, 0]], "cells": [2, 10]}}}},
@@ -444,7 +442,7 @@ fn damped_sheets_bear_what_is_tied_to_them_as_their_material_says() {
                 // Half of the sheet's own weight is beneath its middle.
                 let off = low - 1.0 - strain_under((mass + 0.02) * 9.81 / 0.2, stretch);
                 let case = format!("{stretch} N/m, {mass} kg, {damping} s, {method} in {substeps}");
-                assert!(off.abs() < 0.05, "{case}: {low}, off by {off}");
+                assert!(off.abs() < 0.03, "{case}: {low}, off by {off}");
             }
         }
     }

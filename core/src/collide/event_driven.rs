@@ -20,9 +20,9 @@ use crate::time::Time;
 use glam::Vec3;
 
 /// The number of others that a particle may find near it in one step, each time that it looks what comes next, for
-/// every bounce that the scene allows it: some hundred times what a heap takes. After as many again nobody is looked
+/// every bounce that the scene allows it: by default some hundred times what a heap takes. After as many again nobody is looked
 /// for where it waits.
-const FOUND_A_BOUNCE: u32 = 1 << 11;
+const FOUND_A_BOUNCE: u32 = 1 << 8;
 
 /// A step whose meetings are worked through one after the other.
 pub(super) struct EventDriven<'a> {
@@ -131,8 +131,9 @@ impl EventDriven<'_> {
             self.events.set(row, NextEvent { until: NEVER, ..event });
             return;
         }
-        // Whom one meets has to be met in turn: four times as many of these as of bounces off colliders.
-        let most = self.obstacles.max_bounces.saturating_mul(4);
+        // Whom one meets has to be met in turn: half as many of these as of bounces off colliders, of
+        // which what slides within a curve takes many.
+        let most = self.obstacles.max_bounces.div_ceil(2);
         let most_found = self.obstacles.max_bounces.saturating_mul(FOUND_A_BOUNCE);
         if (event.turns > most || event.found > most_found) && event.waits == 0 {
             self.wait(row);

@@ -18,7 +18,7 @@ pub enum Meetings {
 /// time, and goes on from there.
 ///
 /// Nothing passes through anything however fast, momentum is exact to rounding, and with elasticities of one so is energy.
-/// A particle that has met four times as often as [`Scene::max_bounces`](crate::Scene::max_bounces) says waits where it is for
+/// A particle that has met half as often as [`Scene::max_bounces`](crate::Scene::max_bounces) says waits where it is for
 /// the sub-step's end (counted in `caps.bounces`), as does one that finds others near it some ten thousand times: that is what
 /// happens in a dense heap, where every touch is a meeting; for heaps use [`Contacts`](crate::Contacts).
 /// Whichever index the scene has, the answer is the same to the bit.

@@ -108,7 +108,7 @@ pub(crate) fn run(memory: &mut Memory, out: &mut dyn FnMut(&str, u64)) {
     for method in Method::ALL {
         let scene = Scene { start, springs, forces: &forces(), integrator: method, index: &InGrid, ..Scene::EMPTY };
         system.start(&scene, 1).expect("there is memory for it");
-        let frames = if method == Method::Adaptive { 30 } else { 90 };
+        let frames = if *method == Method::Adaptive { 30 } else { 90 };
         for frame in 1..=frames {
             system.step(&scene, Time::frame(frame, 60) - system.time());
         }

@@ -113,3 +113,58 @@ fn what_slides_in_a_bowl_gains_no_energy() {
         }
     }
 }
+
+/// The angle of a pendulum of this length \[m\] a time after it has been let go at another, by RK4 in small steps.
+fn pendulum(length: f64, from: f64, seconds: f64) -> f64 {
+    let (steps, pull) = (20_000, f64::from(G) / length);
+    let h = seconds / f64::from(steps);
+    let slope = |[angle, speed]: [f64; 2]| [speed, -pull * angle.sin()];
+    let on = |a: [f64; 2], b: [f64; 2], by: f64| [a[0] + b[0] * by, a[1] + b[1] * by];
+    let mut state = [from, 0.0];
+    for _ in 0..steps {
+        let a = slope(state);
+        let b = slope(on(state, a, 0.5 * h));
+        let c = slope(on(state, b, 0.5 * h));
+        let d = slope(on(state, c, h));
+        state = on(on(on(on(state, a, h / 6.0), b, h / 3.0), c, h / 3.0), d, h / 6.0);
+    }
+    state[0]
+}
+
+/// What slides in a bowl or a trough without friction swings as a pendulum does, however large the bowl and long the step: a step leads all of its way.
+#[test]
+fn what_slides_in_a_bowl_swings_as_a_pendulum() {
+    let mut cases = 0;
+    for (size, share) in [(0.01f32, 0.0f32), (1.0, 0.0), (1.0, 0.1), (100.0, 0.2)] {
+        let bowl = Sphere { center: Vec3::ZERO, radius: size };
+        let trough = Cylinder { center: Vec3::ZERO, radius: size, height: 4.0 * size };
+        for walls in [&bowl as &dyn Collider, &trough] {
+            for (rate, method) in
+                [(60.0, Method::Rk4), (60.0, Method::Verlet), (120.0, Method::Midpoint), (240.0, Method::Symplectic)]
+            {
+                if !is_run(&mut cases) {
+                    continue;
+                }
+                let (radius, reach) = (share * size, size * (1.0 - share));
+                let angles = [(0.3f32, 0.0f32), (0.8, 0.0), (0.8, 0.5), (1.4, 0.8)];
+                let at = |angle: f32| Vec3::new(-angle.cos(), 0.0, angle.sin()) * (reach * 0.999_99);
+                let start = angles.map(|(angle, elasticity)| Particle {
+                    position: at(angle),
+                    radius,
+                    elasticity,
+                    ..Particle::REST
+                });
+                // As long against a swing whatever the size.
+                let h = f64::from(size).sqrt() / rate;
+                let steps = (4.3 * rate) as u32;
+                let [places, _] = ends(walls, Vec3::NEG_X * G, &start, method, h, steps);
+                for ((from, elasticity), x) in angles.into_iter().zip(places) {
+                    let expected = pendulum(f64::from(reach), f64::from(from), h * f64::from(steps));
+                    let off = f64::from(x.z.atan2(-x.x)) - expected;
+                    let case = format!("{size} m, {radius}, {from} rad, {elasticity}, {method} at {rate}");
+                    assert!(off.abs() < 0.05 * f64::from(from), "{case}: off by {off} from {expected}");
+                }
+            }
+        }
+    }
+}

@@ -34,6 +34,22 @@ impl Solver<'_> {
         lanes::run(Linearise { solver: self });
         self.vectors.shift.fill(Vec3::ZERO);
     }
+
+    /// Takes forces anew where all have been moved, along the directions of the beginning: what is left to ask for, and no shift. What they have been moved
+    /// by is put where they went last.
+    pub(super) fn ask_again(&mut self, bodies: &Bodies<'_>) {
+        let h = self.step.h;
+        core::mem::swap(&mut self.vectors.shift, &mut self.last);
+        let Columns { rows, weight, shift: begun, r, p, q, .. } = &mut self.vectors;
+        for (i, (&row, &shift)) in rows.iter().zip(&*self.last).enumerate() {
+            let at = |column: &[Vec3]| column.get(row as usize).copied().unwrap_or(Vec3::NAN);
+            (p[i], q[i], begun[i]) =
+                (at(bodies.position) + shift, at(bodies.velocity) + shift / h, at(bodies.before[0]));
+            r[i] = if weight[i] > 0.0 { -shift / weight[i] } else { Vec3::ZERO };
+        }
+        lanes::run(Linearise { solver: self });
+        self.vectors.shift.fill(Vec3::ZERO);
+    }
 }
 
 impl Kernel for Linearise<'_, '_> {

@@ -55,7 +55,8 @@ use words::structs;
 /// Stretching and bending are solved as one, by conjugate gradients for the positions at the sub-step's end, as often as it takes to be as stiff
 /// as the numbers say: at rest the forces are those of the material, whatever the sub-steps, and that does not depend on the order of triangles. Where it is damped
 /// and ties or contacts move the ends of edges against each other by more than an eighth of their length in a sub-step, the damping of what takes them back
-/// adds to the load.
+/// adds to the load. Damping that lasts for more than four sub-steps multiplies what strains have of second order in a sub-step's way: a second step of
+/// Newton's method, if it is the shorter one, takes that back.
 /// From 16 particles on, a cycle through coarser meshes of groups of particles (algebraic multigrid by plain aggregation: Vaněk, Mandel and
 /// Brezina, Computing 56, 1996; symmetric Gauss-Seidel sweeps) goes before each iteration, so that about ten are enough however fine and stiff it
 /// is; where bending resists more than stretching, some dozens. They end where what is left is 0.3 % of the whole in the norm of energy (a tenth

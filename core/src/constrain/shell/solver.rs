@@ -30,6 +30,8 @@ const ROUGH: [f32; 2] = [3e-4, 1e-4];
 /// slide and come to rest.
 const FEW: usize = 1024;
 const CLOSER: f32 = 0.1;
+/// The sub-steps of damping from which on solutions are corrected.
+const MANY: f32 = 4.0;
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
 
@@ -231,6 +233,9 @@ impl Solver<'_> {
                 break;
             }
         }
+        if self.step.lag > MANY * self.step.h && self.vectors.pressed == 0 && !self.last.is_empty() {
+            self.correct(bodies, levels, &mut enough);
+        }
         for (last, &shift) in self.last.iter_mut().zip(&*self.vectors.shift) {
             // Which bits a NaN has depends on the machine, and these words are in the hash.
             *last = if shift.is_finite() { shift } else { Vec3::ZERO };
@@ -240,6 +245,17 @@ impl Solver<'_> {
         }
         let Vectors { weight, shift, .. } = &mut self.vectors;
         walls::finish(self.walls, bodies, weight, shift);
+    }
+
+    /// A second step of Newton's method, if it is the shorter one: what strains have of second order in the first is no little where damping multiplies it.
+    fn correct(&mut self, bodies: &mut Bodies<'_>, levels: &mut Levels<'_>, enough: &mut [f32; 2]) {
+        self.ask_again(bodies);
+        self.descend(levels, 0.0, enough, false, bodies.report);
+        let (first, second) = (&*self.last, &mut *self.vectors.shift);
+        let is_shorter = lanes::dot(second, second) < lanes::dot(first, first);
+        for (shift, &first) in second.iter_mut().zip(first) {
+            *shift = if is_shorter { first + *shift } else { first };
+        }
     }
 
     /// Begins with as much of the last sub-step's shifts as is best in the norm of energy, and tells the energy of that.
