@@ -131,8 +131,7 @@ impl EventDriven<'_> {
             self.events.set(row, NextEvent { until: NEVER, ..event });
             return;
         }
-        // Whom one meets has to be met in turn: half as many of these as of bounces off colliders, of
-        // which what slides within a curve takes many.
+        // What slides within a curve bounces off it often: half as many meetings, each in its turn, are enough.
         let most = self.obstacles.max_bounces.div_ceil(2);
         let most_found = self.obstacles.max_bounces.saturating_mul(FOUND_A_BOUNCE);
         if (event.turns > most || event.found > most_found) && event.waits == 0 {
