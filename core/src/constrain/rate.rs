@@ -8,7 +8,7 @@ use glam::Vec3;
 /// directions that others turn by more say nothing of those to come, and damping would drive what is heavy to and fro along them.
 const LITTLE: f32 = 1.0 / 8.0;
 
-/// What edges were from which their change since counts as motion that damping brakes: as their own solution had `left` them. What others have made of
+/// The edges from which their change since counts as motion that damping brakes: as their own solution had `left` them. What others have made of
 /// them, until the sub-step had `begun`, a solution takes back: that is no motion. Of what is not little against the edges (the root of the mean
 /// square) less is left out, and in the end nothing, nor where nothing had been left. What moves all ends alike changes nothing.
 pub(super) fn braked_from<const N: usize>(begun: [Vec3; N], left: [Vec3; N]) -> [Vec3; N] {

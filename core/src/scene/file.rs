@@ -129,7 +129,7 @@ pub struct Run {
     /// How paths find what they run into among the triangles of a mesh.
     pub collision_index: rays::Structure,
     /// How often a particle may bounce in one sub-step before it waits for its end, from 1 to 10000. What slides within a
-    /// surface that curves hops along it by chords, 40 where it goes a fifteenth of its radius. By `impulse` it may meet others half as often.
+    /// surface that curves hops along it by chords, about 35 where it goes a fifteenth of its radius. By `impulse` it may meet others half as often.
     pub max_bounces: u32,
     /// The seed of all randomness.
     pub seed: u64,

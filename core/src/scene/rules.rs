@@ -52,8 +52,8 @@ pub struct Scene<'a> {
     /// The answer of those that have a radius where they meet.
     pub meetings: Meetings,
     /// How often a particle may bounce in one sub-step before it waits at the surface for its end, which is counted in
-    /// `caps.bounces`: by default 64 times. What slides within a surface that curves hops along it by chords, the more the
-    /// farther it goes in a sub-step against the radius: 40 at a fifteenth of that. By [`Impulse`](crate::Impulse) it may meet others and colliders half as often.
+    /// `caps.bounces`: by default 64 times. What slides within a surface that curves hops along it by chords, about 35 of them where it
+    /// goes a fifteenth of the radius in a sub-step. By [`Impulse`](crate::Impulse) it may meet others and colliders half as often.
     pub max_bounces: u32,
     /// How they are moved.
     pub integrator: &'a dyn Integrator,

@@ -131,7 +131,7 @@ fn pendulum(length: f64, from: f64, seconds: f64) -> f64 {
     state[0]
 }
 
-/// What slides in a bowl or a trough without friction swings as a pendulum does, however large the bowl and long the step: a step leads all of its way.
+/// Points and balls that slide in a bowl or a trough without friction swing as pendulums do, however large that is: a step leads all of their way.
 #[test]
 fn what_slides_in_a_bowl_swings_as_a_pendulum() {
     let mut cases = 0;
