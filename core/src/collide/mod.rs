@@ -20,6 +20,7 @@ mod sweep;
 mod swept;
 mod tile;
 mod tile_sweep;
+mod turn;
 mod waiting;
 
 pub(crate) use lead::LeadCode;

@@ -5,6 +5,7 @@ use super::lead::Lead;
 use super::path::Path;
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
+use super::turn::{Turn, curves, turned};
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
 use crate::math::{along, aside, dot, is_zero, length, max, minus, over, plus, scaled, sqrt};
@@ -121,19 +122,15 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let surface = plus(surface, whole);
         let [came, mut slip, mut after] = answered(before, surface, normal, [incoming, outgoing], &mixed.friction);
         let going = self.onward(&until, after);
-        if rests && path.pull.is_some() {
-            slip = risen(slip, dot(mean, minus(beside, place)));
-            after = plus(surface, slip);
+        let (raised, elapsed) = (minus(beside, place), path.duration() * meeting.time);
+        let turn = Turn { raised, speeds: [incoming, outgoing], elapsed, elasticity: mixed.elasticity, rests };
+        if let Some(turned) = self.turned(path, &meeting.hit, [mean, surface, slip], [ride, belt], &turn) {
+            slip = turned;
+            after = along(plus(surface, slip), normal, outgoing);
         }
-        let Self { id, row, mass, .. } = *self;
-        let (time, closing) = (during[0], max(-incoming, 0.0));
         let mut told = [before, after];
         self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing], &mut told);
-        if let Some(observer) = &mut self.observer {
-            let [before, after] = told;
-            let closing = if self.left.is_some() { max(-dot(minus(before, surface), normal), 0.0) } else { closing };
-            observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
-        }
+        self.tell(path, meeting, surface, told);
         if !rests {
             let fast = along(plus(surface, slip), normal, onward);
             let from =
@@ -146,6 +143,36 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let landing =
             Landing { beside, during, surface, ride, belt, incoming, came, slip, after, acceleration, friction };
         self.stay(path, meeting, &lead, landing)
+    }
+
+    /// Tells of a hit, if anybody wants to know.
+    #[inline(always)]
+    fn tell(&mut self, path: &Path, meeting: &Meeting, surface: Vec3, [before, after]: [Vec3; 2]) {
+        let Self { id, row, mass, .. } = *self;
+        let (place, normal, time) = (meeting.place, meeting.hit.normal, path.instant(meeting.time));
+        if let Some(observer) = &mut self.observer {
+            let closing = max(-dot(minus(before, surface), normal), 0.0);
+            observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+        }
+    }
+
+    /// The slip that is left of what a curved surface turns, if it does so. One that moves within itself turns what it has no hold of as if it stood still.
+    #[cfg_attr(one_by_one, inline(never))]
+    fn turned(
+        &self,
+        path: &Path,
+        hit: &Hit,
+        [mean, surface, slip]: [Vec3; 3],
+        [ride, belt]: [Option<&Ride>; 2],
+        turn: &Turn,
+    ) -> Option<Vec3> {
+        let Hit { normal, velocity, slack, .. } = *hit;
+        if self.left.is_some() || !curves(minus(path.v0, velocity), normal) {
+            return None;
+        }
+        let (ride, carried) = if belt.is_some() { (None, aside(surface, normal)) } else { (ride, Vec3::ZERO) };
+        let gain = turn.gain(seen(mean, ride, slip));
+        Some(minus(turned(plus(slip, carried), gain, turn.rests, turn.is_smooth(slack)), carried))
     }
 
     /// Tells whether a hit leaves lying what constraints have moved, which shows no force that would press it on: it leaves it the speed of the surface alone.
@@ -340,15 +367,6 @@ fn has_lain(path: &Path, meeting: &Meeting, place: Vec3) -> bool {
     let near = LAIN * meeting.hit.slack;
     let (off, fast) = (minus(lain_to(path, meeting), place), minus(path.v0, meeting.hit.velocity));
     dot(off, off) <= near * near && length(fast) * (path.duration() * meeting.time) <= near
-}
-
-/// The slip of what has slid into a surface that curves, and is set off from it: it would otherwise rise by as much in each step for nothing, since
-/// on its straight way it has not been braked as it should be on one that rises.
-#[cfg_attr(one_by_one, inline(never))]
-fn risen(slip: Vec3, work: f32) -> Vec3 {
-    let square = dot(slip, slip);
-    let left = square + 2.0 * work;
-    if left < square { scaled(slip, if left > 0.0 { sqrt(left / square) } else { 0.0 }) } else { slip }
 }
 
 /// A speed after a way along which it gains `work` \[m²/s²\], a share of the square of it; none, where that takes more.

@@ -5,6 +5,7 @@ use super::lead::Lead;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::tile::Obstacles;
+use super::turn::{curves, turned};
 use crate::material::on_surface;
 use crate::math::{along, dot, is_zero, largest, length, max, min, minus, plus, unit};
 use crate::observe::{Impact, Observer, Sliding};
@@ -20,6 +21,9 @@ pub(super) const LAIN: f32 = 8.0;
 /// The largest number of times that the instant of a hit is looked for on the path. Newton's method takes three to six;
 /// halving, where it fails, comes within 10 µs of a step of a second.
 pub(super) const MAX_LOOKS: u32 = 16;
+
+/// The number of parts of a chord in which a hit is sought again that lies far along the surface from where the chord meets it.
+const PARTS_OF_CHORD: u8 = 8;
 
 /// A rebound that would be over within this part of a step is none: the particle rests on the surface.
 pub(crate) const RESTING: f32 = 0.25;
@@ -72,6 +76,27 @@ impl Meeting {
     /// The end in a sink.
     pub(super) fn arrival(&self, path: &Path) -> Arrival {
         Arrival { position: self.place, velocity: path.velocity(self.time), pending_death: PendingDeath::Sink }
+    }
+
+    /// Puts it to where a piece of the path that spans such a part of it meets the surface, unless that is the plane by whose crossing it is there already.
+    #[cfg_attr(one_by_one, inline(never))]
+    fn put_nearer(
+        &mut self,
+        path: &Path,
+        cubic: &Cubic,
+        near: Hit,
+        piece: &Segment,
+        [from, to]: [f32; 2],
+        place: Vec3,
+    ) {
+        let hit = core::mem::replace(&mut self.hit, near);
+        let drift = [&hit, &near].map(|hit| dot(hit.velocity, hit.normal) * path.duration());
+        let (found, nearby) = (from + (to - from) * near.time, piece.at(near.time));
+        let is_flat = near.normal == hit.normal && drift == [0.0; 2];
+        if !(is_flat && dot(minus(nearby, place), hit.normal).abs() <= 0.5 * near.slack) {
+            let time = crossing(cubic, drift[1], &near, nearby, [from, found, to]);
+            (self.time, self.place) = (time, cubic.at(time));
+        }
     }
 
     /// The same on a path of which that where it was found is the first `share`.
@@ -136,6 +161,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let (normal, time) = (seat.normal, path.during[0]);
         let (incoming, pressing) = (dot(path.v0, normal), -dot(acceleration, normal));
         let (slip, drive) = (along(path.v0, normal, -incoming), along(acceleration, normal, pressing));
+        let slip = if curves(path.v0, normal) { turned(slip, incoming * incoming, true, true) } else { slip };
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(path.duration());
         let (place, before, after, surface) = (path.x0, path.v0, slip, Vec3::ZERO);
         let (id, row, mass, closing) = (self.id, self.row, self.mass, max(-incoming, 0.0));
@@ -240,6 +266,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     /// Puts a meeting that a chord has found before `end` to its instant on the path: where that crosses the plane that touches the
     /// surface. A place far along the surface from that on the chord asks for the surface there, and where that is another plane, for the
     /// crossing of it.
+    #[cfg_attr(one_by_one, inline(never))]
     fn put_on_path(&self, path: &Path, cubic: &Cubic, meeting: &mut Meeting, end: f32) {
         let Meeting { begun, hit, place, .. } = *meeting;
         let drift = dot(hit.velocity, hit.normal) * path.duration();
@@ -248,20 +275,17 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         if !(length(minus(meeting.place, place)) > 16.0 * hit.slack) {
             return;
         }
-        let reach = (end - begun) * (1.0 / 16.0);
-        let [from, to] = [max(time - reach, begun), min(time + reach, end)];
-        let piece = path.piece(cubic, [from, to], self.radius);
-        let Some((near, is_sink)) = self.first_hit(&piece) else { return };
-        if is_sink != meeting.is_sink || !(dot(near.normal, hit.normal) > 0.0) {
-            return;
-        }
-        meeting.hit = near;
-        let found = from + (to - from) * near.time;
-        let (nearby, turn) = (piece.at(near.time), dot(near.velocity, near.normal) * path.duration());
-        let is_flat = near.normal == hit.normal && drift == 0.0 && turn == 0.0;
-        if !(is_flat && dot(minus(nearby, place), hit.normal).abs() <= 0.5 * near.slack) {
-            let time = crossing(cubic, turn, &near, nearby, [from, found, to]);
-            (meeting.time, meeting.place) = (time, cubic.at(time));
+        // Around it first; where what it grazes bends away from the plane there, part by part along the chord.
+        let part = (end - begun) * (1.0 / f32::from(PARTS_OF_CHORD));
+        let mut span = [max(time - 0.5 * part, begun), min(time + 0.5 * part, end)];
+        for i in 0..=PARTS_OF_CHORD {
+            let piece = path.piece(cubic, span, self.radius);
+            match self.first_hit(&piece) {
+                Some((near, is_sink)) if is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
+                    return meeting.put_nearer(path, cubic, near, &piece, span, place);
+                }
+                _ => span = [begun + part * f32::from(i), begun + part * f32::from(i + 1)],
+            }
         }
     }
 }

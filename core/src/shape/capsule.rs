@@ -96,6 +96,10 @@ impl Convex for Capsule {
         Some(Span { enter, leave, enter_normal: normal(enter), leave_normal: normal(leave) })
     }
 
+    fn normal_by(&self, point: Vec3) -> Vec3 {
+        unit(self.offset(point))
+    }
+
     fn reach(&self) -> f32 {
         max(largest(self.from), largest(self.to)) + self.radius
     }

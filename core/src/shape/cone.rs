@@ -124,6 +124,18 @@ impl Convex for Cone {
         slab.and(self.mantle(offset - Vec3::Y * half, step)?)
     }
 
+    fn normal_by(&self, point: Vec3) -> Vec3 {
+        let offset = point - self.center;
+        let ((around, out), below) = (polar(offset), -0.5 * self.height - offset.y);
+        let normal = (around * self.height + Vec3::Y * self.radius) / self.slant();
+        let beside = ((out - self.radius) * self.height - below * self.radius) / self.slant();
+        match () {
+            () if below > beside => Vec3::NEG_Y,
+            () if around == Vec3::ZERO => Vec3::ZERO,
+            () => normal,
+        }
+    }
+
     fn reach(&self) -> f32 {
         largest(self.center) + self.radius + self.height
     }

@@ -14,6 +14,11 @@ pub(super) trait Convex {
     /// Where the line `from` + t × `step` runs inside, if anywhere; `step` is not zero.
     fn span(&self, from: Vec3, step: Vec3) -> Option<Span>;
 
+    /// The outward unit normal of its surface by a point that is within rounding of that, where it is smooth; else none.
+    fn normal_by(&self, _: Vec3) -> Vec3 {
+        Vec3::ZERO
+    }
+
     /// How far its surface reaches from the origin \[m\], about.
     fn reach(&self) -> f32;
 }
@@ -79,12 +84,17 @@ pub(super) fn first_hit(solid: &impl Convex, segment: &Segment) -> Option<Hit> {
         return None;
     }
     let slack = segment.slack(solid.reach());
-    let Some(span) = solid.span(segment.from, step) else {
-        // The ends differ but the line just misses: it runs within rounding of the surface.
-        return (starts_inside != ends_inside).then(|| Hit::new(0.0, -unit(step), slack));
+    // A line may run within rounding of the surface, so that it seems to miss, or to be met from behind. At an apex or a rim the normal may be none:
+    // then the way back has to do.
+    let grazed = || match solid.normal_by(segment.from) {
+        Vec3::ZERO => -unit(step),
+        normal if starts_inside => -normal,
+        normal => normal,
     };
-    // At an apex or a rim the normal may be none, or point along the path: then the way back has to do.
-    let facing = |normal: Vec3| if step.dot(normal) < 0.0 { normal } else { -unit(step) };
+    let Some(span) = solid.span(segment.from, step) else {
+        return (starts_inside != ends_inside).then(|| Hit::new(0.0, grazed(), slack));
+    };
+    let facing = |normal: Vec3| if step.dot(normal) < 0.0 { normal } else { grazed() };
     let hit = |time, normal| Some(Hit::new(clamp(time, 0.0, 1.0), facing(normal), slack));
     match (starts_inside, ends_inside) {
         (true, _) => hit(span.leave, -span.leave_normal),

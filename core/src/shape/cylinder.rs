@@ -79,6 +79,16 @@ impl Convex for Cylinder {
         slab.and(Span { enter, leave, enter_normal: normal(enter), leave_normal: normal(leave) })
     }
 
+    fn normal_by(&self, point: Vec3) -> Vec3 {
+        let offset = point - self.center;
+        let (side, above) = (flat(offset), offset.y.abs() - 0.5 * self.height);
+        if length(side) - self.radius >= above {
+            unit(side)
+        } else {
+            Vec3::new(0.0, if offset.y < 0.0 { -1.0 } else { 1.0 }, 0.0)
+        }
+    }
+
     fn reach(&self) -> f32 {
         largest(self.center) + self.radius + self.height
     }

@@ -62,6 +62,10 @@ impl Convex for Sphere {
         Some(Span { enter, leave, enter_normal: normal(enter), leave_normal: normal(leave) })
     }
 
+    fn normal_by(&self, point: Vec3) -> Vec3 {
+        unit(point - self.center)
+    }
+
     fn reach(&self) -> f32 {
         largest(self.center) + self.radius
     }

@@ -235,9 +235,9 @@ fn what_slides_in_a_smooth_drum_that_spins_gains_nothing() {
                     let (x, v) = (f64s(particles.position[0]), f64s(particles.velocity[0]));
                     let depth = 0.25 * 9.81 * f64::from(size);
                     let gained = (0.5 * gap(v, [0.0; 3]).powi(2) + 9.81 * (x[2] - f64::from(position.z))) / depth;
-                    // By the way that a wall turns in a step, what slides in the smallest ball is driven along.
-                    let most = if f64::from(spin) < 0.04 * rate { 0.1 } else { 0.2 };
-                    if !(gained < most && gained > -0.3) {
+                    // The symplectic Euler method falls farther than it gets faster.
+                    let least = if method == Method::Symplectic { -0.2 } else { -0.1 };
+                    if !(least..0.01).contains(&gained) {
                         failures.push(format!("{shape:?}, {spin}/s, e {elasticity}, {method}, {rate}/s: {gained:.3}"));
                     }
                 }

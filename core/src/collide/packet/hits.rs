@@ -163,6 +163,7 @@ impl<F: Lanes> Meetings<F> {
         let piece = Segments { from: begin, to: Vectors::select(to.simd_eq(all(1.0)), paths.x1, cubics.at(to)) };
         let near = walls.first_hits::<POINTS>(&piece, radius);
         let are = is_far & near.are & near.normal.dot(self.hits.normal).simd_gt(all(0.0));
+        self.unclear = self.unclear | (is_far & not(are));
         let nearby = piece.at(near.time);
         let height = (nearby - found).dot(self.hits.normal).abs();
         let is_flat = (near.normal - self.hits.normal).is_zero() & height.simd_le(all(0.5) * near.slack);

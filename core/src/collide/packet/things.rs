@@ -130,8 +130,12 @@ impl<F: Lanes, const KIND: u8> Solids<F, KIND> {
         let room = Vectors([room, room, room]);
         let asked = self.may_touch(least - room, most + room) & not(step.is_zero() | (starts & ends));
         let Span { are, enter, leave, normal } = self.span(from, step, starts);
-        let back = -step.unit();
-        let normal = Vectors::select(step.dot(normal).simd_lt(zero) & are, normal, back);
+        let faces = step.dot(normal).simd_lt(zero) & are;
+        let normal = if (asked & not(faces)).any() {
+            Vectors::select(faces, normal, self.grazed(from, step, starts))
+        } else {
+            normal
+        };
         let time = min(max(starts.select(leave, enter), zero), one);
         // Straight through. A start within rounding of the surface may seem inside the span: it enters if the entrance is the nearer end.
         let ahead = enter.simd_gt(zero) | negated(enter).simd_lt(leave);
@@ -140,6 +144,17 @@ impl<F: Lanes, const KIND: u8> Solids<F, KIND> {
         let hits = (are & (starts | ends | through)) | (not(are) & (starts ^ ends));
         let are_all = all(f32::from_bits(u32::MAX));
         Hits { are: asked & hits, time: time & are, normal, slack, beside_face: are_all }
+    }
+
+    /// Normals toward lines that run within rounding of the surface.
+    #[inline(always)]
+    fn grazed(&self, from: Vectors<F>, step: Vectors<F>, starts: F) -> Vectors<F> {
+        let back = -step.unit();
+        let round = || {
+            let normal = (from - self.center).unit();
+            Vectors::select(normal.is_zero(), back, Vectors::select(starts, -normal, normal))
+        };
+        self.either(round, || back, Vectors::select)
     }
 
     /// Where lines run inside, and the outward normals where they enter, or where they leave for those that are asked for that; turned
