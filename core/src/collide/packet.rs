@@ -11,7 +11,7 @@ mod things;
 mod walls;
 
 use super::sweep::{LAIN, RESTING};
-use super::turn::{CURVED, LOSS, SMOOTH, STEEP};
+use super::turn::{LOSS, SMOOTH, STEEP};
 use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, negated, not};
 use crate::shape::Face;
 use crate::time::Time;
@@ -149,8 +149,6 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
     fn along(&self, paths: &Paths<F>, acceleration: Vectors<F>, normal: Vectors<F>) -> (Paths<F>, bool) {
         let (incoming, pressing) = (paths.v0.dot(normal), negated(acceleration.dot(normal)));
         let (slip, drive) = (paths.v0 - normal * incoming, acceleration + normal * pressing);
-        let zero = incoming.all(0.0);
-        let slip = turned(slip, incoming * incoming, [curves(paths.v0, normal), zero, zero.simd_eq(zero)]);
         let ([way, end], is_steady) = self.slide(slip, drive, pressing, paths.time);
         let mut along = Paths { v0: slip, x1: paths.x0 + way, v1: end, ..*paths };
         if self.swing {
@@ -263,6 +261,11 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
                 break;
             }
             rounds += 1;
+            if walls.face().is_none() {
+                // What may be turned by a curve is followed by itself.
+                clear = clear & not(hit & self.may_be_turned(&onward, &cubics, &meetings.hits));
+                hit = hit & clear;
+            }
             *hits = hit.to_bitmask();
             astray = astray | (hit & meetings.hits.beside_face);
             let ways = (&onward, &cubics, &slides);
@@ -278,6 +281,16 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         }
         let settled = clear & not(hit) & onward.end_finite();
         Flight { onward, settled, astray, hits }
+    }
+
+    /// Those whose hits may be some of a chain along one surface, as `turn` has it.
+    #[inline(always)]
+    fn may_be_turned(&self, paths: &Paths<F>, cubics: &Cubics<F>, hits: &Hits<F>) -> F {
+        let (all, like) = (|x| hits.time.all(x), hits.time);
+        let incoming = paths.velocity(cubics, like).dot(hits.normal);
+        let deeper = paths.time * like * incoming * max(all(1.0) - max(self.elasticity, all(0.0)), all(LOSS));
+        let is_slow = (all(STEEP) * (incoming * incoming)).simd_le(paths.v0.dot(paths.v0));
+        deeper.abs().simd_le(all(2.0 * SMOOTH) * hits.slack) & is_slow
     }
 
     /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, those of them that slide, and whose are free.
@@ -324,11 +337,6 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
             & (incoming.simd_ge(zero) | (all(2.0) * onward).simd_lt(all(RESTING * dt) * pressing));
         let slip = still + (came + self.answer(came, outgoing - incoming));
         let acceleration = self.onward(until, slip + normal * outgoing, rest).mean;
-        let deeper = paths.time * s * incoming * max(all(1.0) - max(self.elasticity, zero), all(LOSS));
-        let is_smooth = deeper.abs().simd_le(all(SMOOTH) * meetings.hits.slack);
-        let lost = incoming * incoming;
-        let curved = curves(paths.v0, normal);
-        let slip = turned(slip, lost - outgoing * outgoing, [curved, zero, is_smooth]);
         let velocity = slip + normal * onward;
         let x1 = beside + (velocity + acceleration * (all(0.5) * rest)) * rest;
         let x1 = leads.map_or(x1, |leads| leads.beyond(x1));
@@ -337,7 +345,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
             return (flying, Slides::none(like), is_free);
         }
         let borne = pressed.held(normal);
-        let held = turned(still + held, lost + all(2.0) * work, [curved, rests, is_smooth]);
+        let held = if slides.are.any() { Vectors::select(slides.are, risen(held, work), held) } else { held };
         let resting = self.rest(paths, meetings, leads, beside, [held, borne], rest);
         (Paths::select(rests, resting, flying), Slides { are: rests, pull: borne }, is_free)
     }
@@ -442,26 +450,13 @@ impl<F: Lanes> Riders<F, true> {
     }
 }
 
-/// Those whose velocities surfaces with these normals are turned away from, as in `turn`.
+/// The slips of what has slid into surfaces that curve, and is set off from them by such a work, as in `rebound`.
 #[inline(always)]
-fn curves<F: Lanes>(velocity: Vectors<F>, normal: Vectors<F>) -> F {
-    let across = velocity.dot(normal);
-    (across * across).simd_gt(across.all(CURVED) * velocity.dot(velocity))
-}
-
-/// The slips of those that surfaces that are `curved` have turned, as in `turn`.
-#[inline(always)]
-fn turned<F: Lanes>(slip: Vectors<F>, gain: F, [curved, rests, is_smooth]: [F; 3]) -> Vectors<F> {
-    let (all, zero, square) = (|x| gain.all(x), gain.all(0.0), slip.dot(slip));
-    let gains = gain.simd_gt(zero);
-    let may_gain = gains & is_smooth & (all(STEEP) * gain).simd_le(square);
-    let turns = curved & square.simd_gt(zero) & (may_gain | (rests & not(gains)));
-    if !turns.any() {
-        return slip;
-    }
-    let left = square + gain;
-    let share = (left / square).sqrt() & left.simd_gt(zero);
-    Vectors::select(turns, slip * share, slip)
+fn risen<F: Lanes>(slip: Vectors<F>, work: F) -> Vectors<F> {
+    let square = slip.dot(slip);
+    let left = square + work.all(2.0) * work;
+    let share = (left / square).sqrt() & left.simd_gt(work.all(0.0));
+    Vectors::select(left.simd_lt(square), slip * share, slip)
 }
 
 /// Speeds after a way along which they gain `work` \[m²/s²\], a share of the square of it.

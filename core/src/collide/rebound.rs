@@ -5,7 +5,7 @@ use super::lead::Lead;
 use super::path::Path;
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
-use super::turn::{Turn, curves, turned};
+use super::turn::{Turn, gaining};
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
 use crate::math::{along, aside, dot, is_zero, length, max, minus, over, plus, scaled, sqrt};
@@ -124,10 +124,9 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let going = self.onward(&until, after);
         let (raised, elapsed) = (minus(beside, place), path.duration() * meeting.time);
         let turn = Turn { raised, speeds: [incoming, outgoing], elapsed, elasticity: mixed.elasticity, rests };
-        if let Some(turned) = self.turned(path, &meeting.hit, [mean, surface, slip], [ride, belt], &turn) {
-            slip = turned;
-            after = along(plus(surface, slip), normal, outgoing);
-        }
+        let is_turned;
+        (slip, is_turned) = self.turned(path, meeting, [mean, surface, slip], belt.is_some(), &turn);
+        after = along(plus(surface, slip), normal, outgoing);
         let mut told = [before, after];
         self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing], &mut told);
         self.tell(path, meeting, surface, told);
@@ -135,7 +134,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let fast = along(plus(surface, slip), normal, onward);
             let from =
                 if self.lies(path, meeting, [surface, fast], going.mean) { lain_to(path, meeting) } else { beside };
-            let mut onward = Path::onward(from, fast, going.mean, during);
+            let pull = is_turned.then_some(going.mean);
+            let mut onward = Path { pull, ..Path::onward(from, fast, going.mean, during) };
             self.lead_on(&lead, &mut onward, None);
             return onward;
         }
@@ -156,23 +156,26 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         }
     }
 
-    /// The slip that is left of what a curved surface turns, if it does so. One that moves within itself turns what it has no hold of as if it stood still.
+    /// The slip that is left where a hit is one of a chain along a surface that curves, and whether it is. One that moves within itself turns what it has no hold of as if
+    /// it stood still; of those that move otherwise nothing is known. What slides into another surface pays for being raised: it would otherwise rise by as much in each
+    /// step for nothing.
     #[cfg_attr(one_by_one, inline(never))]
     fn turned(
         &self,
         path: &Path,
-        hit: &Hit,
+        meeting: &Meeting,
         [mean, surface, slip]: [Vec3; 3],
-        [ride, belt]: [Option<&Ride>; 2],
+        is_belt: bool,
         turn: &Turn,
-    ) -> Option<Vec3> {
-        let Hit { normal, velocity, slack, .. } = *hit;
-        if self.left.is_some() || !curves(minus(path.v0, velocity), normal) {
-            return None;
+    ) -> (Vec3, bool) {
+        let Hit { normal, velocity, .. } = meeting.hit;
+        let raising = turn.raising(mean);
+        let stands = is_belt || is_zero(velocity);
+        if stands && self.left.is_none() && self.is_turned(path, meeting, turn) {
+            let carried = if is_belt { aside(surface, normal) } else { Vec3::ZERO };
+            return (minus(gaining(plus(slip, carried), turn.lost() + raising), carried), true);
         }
-        let (ride, carried) = if belt.is_some() { (None, aside(surface, normal)) } else { (ride, Vec3::ZERO) };
-        let gain = turn.gain(seen(mean, ride, slip));
-        Some(minus(turned(plus(slip, carried), gain, turn.rests, turn.is_smooth(slack)), carried))
+        (if path.pull.is_some() && raising < 0.0 { gaining(slip, raising) } else { slip }, false)
     }
 
     /// Tells whether a hit leaves lying what constraints have moved, which shows no force that would press it on: it leaves it the speed of the surface alone.

@@ -5,7 +5,6 @@ use super::lead::Lead;
 use super::path::{Cubic, MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::tile::Obstacles;
-use super::turn::{curves, turned};
 use crate::material::on_surface;
 use crate::math::{along, dot, is_zero, largest, length, max, min, minus, plus, unit};
 use crate::observe::{Impact, Observer, Sliding};
@@ -118,14 +117,14 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     #[inline(always)]
     pub(super) fn travel(&mut self, path: &Path, is_newborn: bool, may_lie: bool) -> Option<Arrival> {
         let lying = if may_lie { self.lying(path) } else { None };
-        let path = match lying {
-            Some(path) => path,
+        let (path, slack) = match lying {
+            Some(along) => along,
             None if !self.may_touch(&path.hull(self.radius)) => return None,
-            None if is_newborn => self.let_go(path),
-            None if path.lags() => self.pressed_on(path),
-            None => *path,
+            None if is_newborn => (self.let_go(path), 0.0),
+            None if path.lags() => (self.pressed_on(path), 0.0),
+            None => (*path, 0.0),
         };
-        Some(self.follow(path))
+        Some(self.follow(path, slack))
     }
 
     /// Tells whether a path inside a box may meet anything.
@@ -152,16 +151,15 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         }
     }
 
-    /// The way of what lies on one surface that stands still, and is pressed on to it: along that, from its own place.
+    /// The way of what lies on one surface that stands still, and is pressed on to it: along that, from its own place; and the slack of that.
     #[inline(never)]
-    pub(super) fn lying(&mut self, path: &Path) -> Option<Path> {
+    pub(super) fn lying(&mut self, path: &Path) -> Option<(Path, f32)> {
         let acceleration = path.acceleration();
         let seat = self.seat(path, acceleration)?;
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, seat.material);
         let (normal, time) = (seat.normal, path.during[0]);
         let (incoming, pressing) = (dot(path.v0, normal), -dot(acceleration, normal));
         let (slip, drive) = (along(path.v0, normal, -incoming), along(acceleration, normal, pressing));
-        let slip = if curves(path.v0, normal) { turned(slip, incoming * incoming, true, true) } else { slip };
         let (way, end) = Slide { velocity: slip, drive, pressing, friction: mixed.friction }.after(path.duration());
         let (place, before, after, surface) = (path.x0, path.v0, slip, Vec3::ZERO);
         let (id, row, mass, closing) = (self.id, self.row, self.mass, max(-incoming, 0.0));
@@ -175,7 +173,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         let mut onward =
             Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during: path.during, pull: Some(acceleration) };
         self.lead_on(&self.lead(path, 0.0, normal), &mut onward, Some(&along));
-        Some(onward)
+        Some((onward, seat.slack))
     }
 
     /// By how much a method leads beyond a parabola along a surface that a path meets, if there are springs.
@@ -211,16 +209,18 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         (is_there && rests).then_some(seat)
     }
 
-    pub(super) fn follow(&mut self, mut path: Path) -> Arrival {
+    /// On a path, past as many hits as there may be; the slack is that of the surface along which it goes, if it goes along one.
+    pub(super) fn follow(&mut self, mut path: Path, mut slack: f32) -> Arrival {
         for _ in 0..self.obstacles.max_bounces {
             let Some(meeting) = self.first_meeting(&path) else {
-                let (position, velocity) = (path.x1, self.left_or(path.v1));
+                let (position, velocity) = (path.x1, self.left_or(self.turned_at_end(&path, slack)));
                 return Arrival { position, velocity, pending_death: PendingDeath::Lives };
             };
             if meeting.is_sink {
                 let end = meeting.arrival(&path);
                 return Arrival { velocity: self.left_or(end.velocity), ..end };
             }
+            slack = meeting.hit.slack;
             path = self.rebound(&path, &meeting);
         }
         self.report.caps.bounces += 1;

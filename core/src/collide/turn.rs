@@ -1,9 +1,13 @@
 //! Surfaces that curve turn what slides along them: from hit to hit that goes straight, along the plane that touches the surface, and is set off again.
 //!
 //! A smooth surface takes nothing from a velocity that it turns, and bears what slides where it is. What a hit takes from it, and what setting it off from the surface
-//! gives it, comes of the straight way: the speed along the surface has both back.
+//! gives it, comes of the straight way: the speed along the surface has both back. A flat surface turns nobody, and where two meet they do take what they turn.
 
-use crate::math::{dot, max, scaled, sqrt};
+use super::path::Path;
+use super::sweep::{LAIN, Meeting, Sweep};
+use crate::math::{along, dot, is_zero, length, max, minus, scaled, sqrt};
+use crate::shape::{Collider, Contact, Hit};
+use crate::time::Time;
 use glam::Vec3;
 
 /// How much deeper into a surface something comes at the most, on its way from hit to hit, where that is smooth \[slacks\]: twice as much as what lies on it may be off
@@ -11,12 +15,11 @@ use glam::Vec3;
 pub(super) const SMOOTH: f32 = 16.0;
 pub(super) const LOSS: f32 = 1.0 / 16.0;
 
-/// How many times as large as what it has back the square of its speed is there at the least: far from the origin, where slacks are large, what comes
-/// more steeply may as well fall onto a floor.
+/// How many times as large as that of its speed across the surface the square of its speed is there at the least.
 pub(super) const STEEP: f32 = 64.0;
 
 /// The square of what a velocity may be turned by from a surface in rounding \[rad²\].
-pub(super) const CURVED: f32 = (16.0 * f32::EPSILON) * (16.0 * f32::EPSILON);
+const CURVED: f32 = (16.0 * f32::EPSILON) * (16.0 * f32::EPSILON);
 
 /// A hit that may be one of such a chain.
 pub(super) struct Turn {
@@ -31,38 +34,114 @@ pub(super) struct Turn {
 }
 
 impl Turn {
-    /// What the square of the speed along the surface has back under such an acceleration \[m²/s²\]. What bounces pays by its bounce for being raised.
+    /// What raising takes from the square of its speed under such an acceleration \[m²/s²\]. What bounces pays by its bounce.
     #[cfg_attr(one_by_one, inline(never))]
-    pub(super) fn gain(&self, acceleration: Vec3) -> f32 {
+    pub(super) fn raising(&self, acceleration: Vec3) -> f32 {
+        if self.rests { 2.0 * dot(acceleration, self.raised) } else { 0.0 }
+    }
+
+    /// What the hit takes from it.
+    pub(super) fn lost(&self) -> f32 {
         let [incoming, outgoing] = self.speeds;
-        let raising = if self.rests { 2.0 * dot(acceleration, self.raised) } else { 0.0 };
-        incoming * incoming - outgoing * outgoing + raising
+        incoming * incoming - outgoing * outgoing
     }
 
-    /// Tells whether a surface of such a slack is smooth for it, and not a corner or a floor that it falls onto.
+    /// Tells whether a surface of such a slack may be smooth for something so fast.
     #[cfg_attr(one_by_one, inline(never))]
-    pub(super) fn is_smooth(&self, slack: f32) -> bool {
-        (self.elapsed * self.speeds[0] * max(1.0 - self.elasticity, LOSS)).abs() <= SMOOTH * slack
+    fn may_be_smooth(&self, slack: f32, velocity: Vec3) -> bool {
+        let incoming = self.speeds[0];
+        let deeper = (self.elapsed * incoming * max(1.0 - self.elasticity, LOSS)).abs();
+        deeper <= SMOOTH * slack && STEEP * (incoming * incoming) <= dot(velocity, velocity)
     }
 }
 
-/// Tells whether a velocity before a hit leads to or from a surface with this normal by more than rounding, as that of what has slid along it does where it
-/// curves; that of what has lain on a flat one does not.
+impl<C: Collider + ?Sized> Sweep<'_, C> {
+    /// Tells whether a hit is one of a chain of them along one surface, which curves toward the path: that has begun on it, and not into it, and meets it where nothing
+    /// else is.
+    #[inline(never)]
+    pub(super) fn is_turned(&self, path: &Path, meeting: &Meeting, turn: &Turn) -> bool {
+        let Hit { normal, slack, .. } = meeting.hit;
+        // A place on the surface may seem to lean on none.
+        let (faces, _) = self.faces(meeting.place, slack, path.instant(meeting.time));
+        if faces > 1 || !turn.may_be_smooth(slack, path.v0) {
+            return false;
+        }
+        let arc = Arc {
+            velocity: path.v0,
+            way: minus(meeting.place, path.x0),
+            normal,
+            loss: max(1.0 - turn.elasticity, LOSS),
+        };
+        self.is_along(path, slack, &arc)
+    }
+
+    /// The velocity at the end of a way along a surface of such a slack, which leads on along that: next time nobody knows whether it has slid or come down.
+    #[inline(never)]
+    pub(super) fn turned_at_end(&self, path: &Path, slack: f32) -> Vec3 {
+        let velocity = path.v1;
+        if path.pull.is_none() || is_zero(velocity) {
+            return velocity;
+        }
+        let Some(there) = self.lone(path.x1, slack, path.during[1]).filter(|there| is_zero(there.velocity)) else {
+            return velocity;
+        };
+        let (across, square) = (dot(velocity, there.normal), dot(velocity, velocity));
+        let arc = Arc { velocity, way: minus(path.x1, path.x0), normal: there.normal, loss: 1.0 };
+        if STEEP * (across * across) > square || !self.is_along(path, slack, &arc) {
+            return velocity;
+        }
+        let slip = along(velocity, there.normal, -across);
+        scaled(slip, sqrt(square) / length(slip))
+    }
+
+    /// Tells whether the surface that a path begins on alone is the one that it meets or ends by: it does not begin into that, which turns until it does, by no more than
+    /// an arc has room for over such a way.
+    fn is_along(&self, path: &Path, slack: f32, arc: &Arc) -> bool {
+        let Arc { velocity, way, normal, loss } = *arc;
+        let Some(start) = self.lone(path.x0, slack, path.during[0]) else { return false };
+        let [came, comes] = [&start.normal, &normal].map(|normal| dot(velocity, *normal));
+        let room = 2.0 * (start.distance - self.radius) + LAIN * slack;
+        leads_into(velocity, normal)
+            && came >= 0.25 * comes
+            && length(way) * (came - comes) * loss <= room * length(velocity)
+    }
+
+    /// The surface that something at a place lies on, if that is one.
+    fn lone(&self, place: Vec3, slack: f32, instant: Time) -> Option<Contact> {
+        let (faces, seat) = self.faces(place, slack, instant);
+        seat.filter(|_| faces == 1)
+    }
+
+    /// The number of surfaces that something at a place lies on, and one of them.
+    fn faces(&self, place: Vec3, slack: f32, instant: Time) -> (u32, Option<Contact>) {
+        let (mut faces, mut seat) = (0, None);
+        self.walls.contacts(place, self.radius + LAIN * slack, instant, &mut |contact| {
+            faces += 1;
+            seat = Some(*contact);
+        });
+        (faces, seat)
+    }
+}
+
+/// A way along a surface: the velocity of who goes it, its normal where he comes, and how much less than that he bounces there.
+struct Arc {
+    velocity: Vec3,
+    way: Vec3,
+    normal: Vec3,
+    loss: f32,
+}
+
+/// Tells whether a velocity leads into a surface with this normal by more than rounding.
 #[cfg_attr(one_by_one, inline(never))]
-pub(super) fn curves(velocity: Vec3, normal: Vec3) -> bool {
+fn leads_into(velocity: Vec3, normal: Vec3) -> bool {
     let across = dot(velocity, normal);
-    across * across > CURVED * dot(velocity, velocity)
+    across < 0.0 && across * across > CURVED * dot(velocity, velocity)
 }
 
-/// The velocity along a surface with what the square of its speed has back: more where the surface is smooth, less where it rests and has been raised by more than it
-/// has fallen.
+/// A velocity along a surface, of the square of whose speed so much is gained.
 #[cfg_attr(one_by_one, inline(never))]
-pub(super) fn turned(slip: Vec3, gain: f32, rests: bool, is_smooth: bool) -> Vec3 {
+pub(super) fn gaining(slip: Vec3, gain: f32) -> Vec3 {
     let square = dot(slip, slip);
-    let turns = if gain > 0.0 { is_smooth && STEEP * gain <= square } else { rests };
-    if !(square > 0.0 && turns) {
-        return slip;
-    }
     let left = square + gain;
-    scaled(slip, if left > 0.0 { sqrt(left / square) } else { 0.0 })
+    if square > 0.0 { scaled(slip, if left > 0.0 { sqrt(left / square) } else { 0.0 }) } else { slip }
 }

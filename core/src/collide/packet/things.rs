@@ -130,20 +130,20 @@ impl<F: Lanes, const KIND: u8> Solids<F, KIND> {
         let room = Vectors([room, room, room]);
         let asked = self.may_touch(least - room, most + room) & not(step.is_zero() | (starts & ends));
         let Span { are, enter, leave, normal } = self.span(from, step, starts);
-        let faces = step.dot(normal).simd_lt(zero) & are;
-        let normal = if (asked & not(faces)).any() {
-            Vectors::select(faces, normal, self.grazed(from, step, starts))
-        } else {
-            normal
-        };
         let time = min(max(starts.select(leave, enter), zero), one);
         // Straight through. A start within rounding of the surface may seem inside the span: it enters if the entrance is the nearer end.
         let ahead = enter.simd_gt(zero) | negated(enter).simd_lt(leave);
         let through = ahead & enter.simd_le(one);
         // The line may just miss where the ends differ.
-        let hits = (are & (starts | ends | through)) | (not(are) & (starts ^ ends));
+        let hits = asked & ((are & (starts | ends | through)) | (not(are) & (starts ^ ends)));
+        let faces = step.dot(normal).simd_lt(zero) & are;
+        let normal = if (hits & not(faces)).any() {
+            Vectors::select(faces, normal, self.grazed(from, step, starts))
+        } else {
+            normal
+        };
         let are_all = all(f32::from_bits(u32::MAX));
-        Hits { are: asked & hits, time: time & are, normal, slack, beside_face: are_all }
+        Hits { are: hits, time: time & are, normal, slack, beside_face: are_all }
     }
 
     /// Normals toward lines that run within rounding of the surface.
