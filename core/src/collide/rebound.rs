@@ -5,7 +5,7 @@ use super::lead::Lead;
 use super::path::Path;
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
-use super::turn::{Turn, gaining};
+use super::turn::{Answer, gaining};
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
 use crate::math::{along, aside, dot, is_zero, length, max, minus, over, plus, scaled, sqrt};
@@ -82,13 +82,13 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     ///
     /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
-        let beside = self.set_off(path, meeting, meeting.place);
-        self.leave(path, meeting, beside)
+        let (beside, is_turned) = (self.set_off(path, meeting, meeting.place), self.is_turned(path, meeting));
+        self.leave(path, meeting, beside, is_turned)
     }
 
-    /// The same from a place beside the hit.
+    /// The same from a place beside the hit, which may be one of a chain along a surface that curves.
     #[inline(never)]
-    fn leave(&mut self, path: &Path, meeting: &Meeting, beside: Vec3) -> Path {
+    fn leave(&mut self, path: &Path, meeting: &Meeting, beside: Vec3, is_turned: bool) -> Path {
         self.report.hits += 1;
         let Hit { normal, velocity: surface, material, .. } = meeting.hit;
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
@@ -122,11 +122,15 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let surface = plus(surface, whole);
         let [came, mut slip, mut after] = answered(before, surface, normal, [incoming, outgoing], &mixed.friction);
         let going = self.onward(&until, after);
-        let (raised, elapsed) = (minus(beside, place), path.duration() * meeting.time);
-        let turn = Turn { raised, speeds: [incoming, outgoing], elapsed, elasticity: mixed.elasticity, rests };
-        let is_turned;
-        (slip, is_turned) = self.turned(path, meeting, [mean, surface, slip], belt.is_some(), &turn);
-        after = along(plus(surface, slip), normal, outgoing);
+        // A surface that moves within itself turns what it has no hold of as if it stood still; of those that move otherwise nothing is known.
+        let is_turned = is_turned && (belt.is_some() || is_zero(meeting.hit.velocity));
+        let answer = Answer { raised: minus(beside, place), speeds: [incoming, outgoing], rests };
+        let gain = answer.gain(mean, is_turned, path.pull.is_some());
+        if gain != 0.0 {
+            let carried = belt.filter(|_| is_turned).map_or(Vec3::ZERO, |_| aside(surface, normal));
+            slip = minus(gaining(plus(slip, carried), gain), carried);
+            after = along(plus(surface, slip), normal, outgoing);
+        }
         let mut told = [before, after];
         self.answer_left(&meeting.hit, &mixed, surface, [incoming, outgoing], &mut told);
         self.tell(path, meeting, surface, told);
@@ -154,28 +158,6 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let closing = max(-dot(minus(before, surface), normal), 0.0);
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
         }
-    }
-
-    /// The slip that is left where a hit is one of a chain along a surface that curves, and whether it is. One that moves within itself turns what it has no hold of as if
-    /// it stood still; of those that move otherwise nothing is known. What slides into another surface pays for being raised: it would otherwise rise by as much in each
-    /// step for nothing.
-    #[cfg_attr(one_by_one, inline(never))]
-    fn turned(
-        &self,
-        path: &Path,
-        meeting: &Meeting,
-        [mean, surface, slip]: [Vec3; 3],
-        is_belt: bool,
-        turn: &Turn,
-    ) -> (Vec3, bool) {
-        let Hit { normal, velocity, .. } = meeting.hit;
-        let raising = turn.raising(mean);
-        let stands = is_belt || is_zero(velocity);
-        if stands && self.left.is_none() && self.is_turned(path, meeting, turn) {
-            let carried = if is_belt { aside(surface, normal) } else { Vec3::ZERO };
-            return (minus(gaining(plus(slip, carried), turn.lost() + raising), carried), true);
-        }
-        (if path.pull.is_some() && raising < 0.0 { gaining(slip, raising) } else { slip }, false)
     }
 
     /// Tells whether a hit leaves lying what constraints have moved, which shows no force that would press it on: it leaves it the speed of the surface alone.

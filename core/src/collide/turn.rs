@@ -5,6 +5,7 @@
 
 use super::path::Path;
 use super::sweep::{LAIN, Meeting, Sweep};
+use crate::material::on_surface;
 use crate::math::{along, dot, is_zero, length, max, minus, scaled, sqrt};
 use crate::shape::{Collider, Contact, Hit};
 use crate::time::Time;
@@ -21,37 +22,25 @@ pub(super) const STEEP: f32 = 64.0;
 /// The square of what a velocity may be turned by from a surface in rounding \[rad²\].
 const CURVED: f32 = (16.0 * f32::EPSILON) * (16.0 * f32::EPSILON);
 
-/// A hit that may be one of such a chain.
-pub(super) struct Turn {
-    /// How far it sets something off \[m\].
+/// How a hit answers something: how far it sets it off \[m\], how fast that came in and goes out \[m/s\], and whether it stays on the surface.
+pub(super) struct Answer {
     pub(super) raised: Vec3,
-    /// How fast that came in, and goes out \[m/s\], and for how long it has been under way \[s\].
     pub(super) speeds: [f32; 2],
-    pub(super) elapsed: f32,
-    pub(super) elasticity: f32,
-    /// Whether it stays on the surface.
     pub(super) rests: bool,
 }
 
-impl Turn {
-    /// What raising takes from the square of its speed under such an acceleration \[m²/s²\]. What bounces pays by its bounce.
+impl Answer {
+    /// What the square of the speed along the surface has back under such an acceleration \[m²/s²\] where the hit is one of a chain. What bounces pays by its bounce for
+    /// being raised; what slides into another surface pays, too: it would otherwise rise by as much in each step for nothing.
     #[cfg_attr(one_by_one, inline(never))]
-    pub(super) fn raising(&self, acceleration: Vec3) -> f32 {
-        if self.rests { 2.0 * dot(acceleration, self.raised) } else { 0.0 }
-    }
-
-    /// What the hit takes from it.
-    pub(super) fn lost(&self) -> f32 {
-        let [incoming, outgoing] = self.speeds;
-        incoming * incoming - outgoing * outgoing
-    }
-
-    /// Tells whether a surface of such a slack may be smooth for something so fast.
-    #[cfg_attr(one_by_one, inline(never))]
-    fn may_be_smooth(&self, slack: f32, velocity: Vec3) -> bool {
-        let incoming = self.speeds[0];
-        let deeper = (self.elapsed * incoming * max(1.0 - self.elasticity, LOSS)).abs();
-        deeper <= SMOOTH * slack && STEEP * (incoming * incoming) <= dot(velocity, velocity)
+    pub(super) fn gain(&self, acceleration: Vec3, is_turned: bool, slid: bool) -> f32 {
+        let ([incoming, outgoing], raising) = (self.speeds, 2.0 * dot(acceleration, self.raised));
+        let raising = if self.rests { raising } else { 0.0 };
+        match () {
+            () if is_turned => incoming * incoming - outgoing * outgoing + raising,
+            () if slid && raising < 0.0 => raising,
+            () => 0.0,
+        }
     }
 }
 
@@ -59,20 +48,22 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// Tells whether a hit is one of a chain of them along one surface, which curves toward the path: that has begun on it, and not into it, and meets it where nothing
     /// else is.
     #[inline(never)]
-    pub(super) fn is_turned(&self, path: &Path, meeting: &Meeting, turn: &Turn) -> bool {
-        let Hit { normal, slack, .. } = meeting.hit;
-        // A place on the surface may seem to lean on none.
-        let (faces, _) = self.faces(meeting.place, slack, path.instant(meeting.time));
-        if faces > 1 || !turn.may_be_smooth(slack, path.v0) {
+    pub(super) fn is_turned(&self, path: &Path, meeting: &Meeting) -> bool {
+        let Hit { normal, velocity, slack, material, .. } = meeting.hit;
+        if self.left.is_some() || !leads_into(path.v0, normal) {
             return false;
         }
-        let arc = Arc {
-            velocity: path.v0,
-            way: minus(meeting.place, path.x0),
-            normal,
-            loss: max(1.0 - turn.elasticity, LOSS),
-        };
-        self.is_along(path, slack, &arc)
+        let incoming = dot(minus(path.velocity(meeting.time), velocity), normal);
+        let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, material);
+        let loss = max(1.0 - mixed.elasticity, LOSS);
+        let is_smooth = (path.duration() * meeting.time * incoming * loss).abs() <= SMOOTH * slack;
+        if !is_smooth || STEEP * (incoming * incoming) > dot(path.v0, path.v0) {
+            return false;
+        }
+        // A place on the surface may seem to lean on none.
+        let (faces, _) = self.faces(meeting.place, slack, path.instant(meeting.time));
+        let arc = Arc { velocity: path.v0, way: minus(meeting.place, path.x0), normal, loss };
+        faces <= 1 && self.is_along(path, slack, &arc)
     }
 
     /// The velocity at the end of a way along a surface of such a slack, which leads on along that: next time nobody knows whether it has slid or come down.
