@@ -3,7 +3,7 @@
 use pointmass::motion::Motion;
 use pointmass::shape::{Aabb, Capsule, Collider, Cylinder, Moving, Plane, Sphere};
 use pointmass::{Gravity, Method, Particle, Scene, Vec3};
-use pointmass_tests::{is_run, run, started};
+use pointmass_tests::{Random, is_run, often, run, started};
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 const G: f32 = 9.80665;
@@ -126,6 +126,46 @@ fn what_slides_in_a_bowl_keeps_its_energy() {
                         assert!(off < 0.04 * whole + 2.0 * raised, "{case}: off by {} of all", off / whole);
                     }
                 }
+            }
+        }
+    }
+}
+
+/// Flat walls turn nobody: who hits one under a small angle, however near it he begins, keeps his speed along it, as he does along a corner of two.
+#[test]
+fn flat_walls_turn_nobody() {
+    let mut random = Random::new(83);
+    let mut hits = 0;
+    for round in 0..often(4000) {
+        let far = [0.0f32, 40.0, 1000.0, 1e5][round % 4];
+        let (home, normal) = (Vec3::X * far, random.direction());
+        let (floor, u) = (Plane { point: home, normal }, normal.any_orthonormal_vector());
+        let (angle, slack) = (random.magnitude(1e-3, 0.5), 8.0 * f32::EPSILON * (far + 1.0));
+        let along = u * angle.cos();
+        let start = Particle {
+            position: home + normal * (slack * random.magnitude(1.0, 100.0)),
+            velocity: along - normal * angle.sin(),
+            elasticity: [0.0, 0.3, 0.8][round % 3],
+            ..Particle::REST
+        };
+        let h = f64::from(random.magnitude(0.01, 1.0));
+        let [_, velocities] = ends(&floor, Vec3::ZERO, &[start], Method::Rk4, h, 1);
+        hits += u32::from(velocities[0] != start.velocity);
+        let v = velocities[0] - normal * velocities[0].dot(normal);
+        assert!((v - along).length() < 1e-5, "{far} {angle} {start:?}: {v} for {along}");
+    }
+    assert!(hits as usize > often(4000) / 4, "{hits}");
+    for (degrees, far) in [1.0f32, 5.0, 10.0].into_iter().flat_map(|degrees| [(degrees, 0.0), (degrees, 40.0)]) {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let home = Vec3::X * far;
+        let corner = (Plane { point: home, normal: Vec3::Y }, Plane { point: home, normal: Vec3::new(sin, -cos, 0.0) });
+        for (rate, elasticity) in [(60.0, 0.0), (240.0, 0.3)] {
+            let position = home + Vec3::new(1.0, 0.5 * sin, 0.0);
+            let start = Particle { position, velocity: Vec3::new(-5.0, 0.0, 1.0), elasticity, ..Particle::REST };
+            for weight in [Vec3::ZERO, Vec3::NEG_Y * G] {
+                let [_, velocities] = ends(&corner, weight, &[start], Method::Rk4, 1.0 / rate, rate as u32);
+                let z = velocities[0].z;
+                assert!((z - 1.0).abs() < 1e-3, "{degrees} degrees at {far}, {elasticity}: {z}");
             }
         }
     }
