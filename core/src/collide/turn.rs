@@ -16,7 +16,7 @@ use glam::Vec3;
 pub(super) const SMOOTH: f32 = 16.0;
 pub(super) const LOSS: f32 = 1.0 / 16.0;
 
-/// How many times as large as that of its speed across the surface the square of its speed is there at the least.
+/// The least ratio there of the square of its speed to that of its speed across the surface.
 pub(super) const STEEP: f32 = 64.0;
 
 /// The square of what a velocity may be turned by from a surface in rounding \[rad²\].
@@ -30,7 +30,7 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    /// What the square of the speed along the surface has back under such an acceleration \[m²/s²\] where the hit is one of a chain. What bounces pays by its bounce for
+    /// The gain in the square of the speed along the surface under such an acceleration \[m²/s²\] where the hit is one of a chain. What bounces pays by its bounce for
     /// being raised; what slides into another surface pays, too: it would otherwise rise by as much in each step for nothing.
     #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn gain(&self, acceleration: Vec3, is_turned: bool, slid: bool) -> f32 {

@@ -188,7 +188,7 @@ fn what_slides_in_a_bowl_gains_no_energy() {
     }
 }
 
-/// What slides round in a ring or a pipe in no gravity goes on as fast, however narrow that is for how far its walls reach.
+/// Points and balls that slide round in a pipe in no gravity go on as fast, however narrow that is for how far its walls reach.
 #[test]
 fn what_slides_round_goes_on_as_fast() {
     for (size, length, speed) in [(0.1f32, 1.0, 2.0f32), (1.0, 4.0, 2.0), (1.0, 4.0, 8.0), (1000.0, 4000.0, 50.0)] {
