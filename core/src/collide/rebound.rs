@@ -82,7 +82,11 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     ///
     /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
-        let (beside, is_turned) = (self.set_off(path, meeting, meeting.place), self.is_turned(path, meeting));
+        let beside = self.set_off(path, meeting, meeting.place);
+        if let Some(along) = self.into_crease(path, meeting, beside) {
+            return along;
+        }
+        let is_turned = self.is_turned(path, meeting);
         self.leave(path, meeting, beside, is_turned)
     }
 
@@ -168,7 +172,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 
     /// How it goes on with another velocity. What constraints have moved is driven by the velocity that they have left it.
     #[cfg_attr(one_by_one, inline(never))]
-    fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
+    pub(super) fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
         let air = self.air.filter(|_| self.left.is_none());
         air.map_or(until.unchanged(), |air| air.onward(until, velocity))
     }

@@ -1,0 +1,142 @@
+//! Creases: what two surfaces press back at once goes along the line in which they meet, and what three do stays.
+//!
+//! From hit to hit it would go from the one to the other and back, some micrometres each time, as often as a step allows, and lose the rest of its way.
+
+use super::air::Until;
+use super::path::Path;
+use super::slide::Slide;
+use super::sweep::{LAIN, Meeting, RESTING, Sweep};
+use crate::force::Friction;
+use crate::material::{Mixed, on_surface};
+use crate::math::{along, dot, is_zero, length, max, minus, plus, scaled};
+use crate::observe::{Impact, Sliding};
+use crate::shape::{Collider, Contact, Crease, Hit};
+use crate::time::Time;
+use glam::Vec3;
+
+/// How something comes into a crease: from where it goes on along that and from when, with which velocity, of which so much is left, and what drives it.
+struct Arriving {
+    place: Vec3,
+    during: [Time; 2],
+    before: Vec3,
+    slip: Vec3,
+    raised: Vec3,
+    acceleration: Vec3,
+}
+
+impl<C: Collider + ?Sized> Sweep<'_, C> {
+    /// The way on from a hit of what has slid along another surface into the one that it hits, and leaves neither for longer than a rest.
+    #[inline(never)]
+    pub(super) fn into_crease(&mut self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<Path> {
+        let Hit { normal, velocity: surface, slack, material, .. } = meeting.hit;
+        let pull = path.pull.filter(|_| self.heeds_creases() && is_zero(surface))?;
+        let before = path.velocity(meeting.time);
+        let mixed = self.mixed(material);
+        let incoming = dot(before, normal);
+        let outgoing = -incoming * mixed.elasticity;
+        // Most bounce: nothing more has to be known of those.
+        if !(incoming < 0.0 && 2.0 * outgoing < RESTING * self.dt * length(pull)) {
+            return None;
+        }
+        let now = path.instant(meeting.time);
+        let came = along(before, normal, -incoming);
+        let crease = self.crease(place, slack, now, pull, along(came, normal, outgoing))?;
+        let came = within(&crease, came);
+        let slip = plus(came, within(&crease, mixed.friction.answer(came, -incoming)));
+        let until = Until { path, place: meeting.place, now, acceleration: pull };
+        let acceleration = self.onward(&until, slip).mean;
+        let raised = minus(place, meeting.place);
+        let during = [now, path.during[1]];
+        Some(self.go_along(&crease, &Arriving { place, during, before, slip, raised, acceleration }))
+    }
+
+    /// The way of what lies in a crease at the start of a path, and is pressed into it: along that, from its own place.
+    #[inline(never)]
+    pub(super) fn lying_in_crease(&mut self, path: &Path, side: &Contact) -> Option<Path> {
+        let (place, during, before, slack) = (path.x0, path.during, path.v0, side.slack);
+        let acceleration = path.acceleration();
+        if !self.heeds_creases() {
+            return None;
+        }
+        let crease = self.crease(place, slack, during[0], acceleration, before)?;
+        let slip = within(&crease, before);
+        let lies = |side: &Contact| {
+            side.distance - self.radius >= 0.5 * side.slack
+                && dot(before, side.normal).abs() * path.duration() <= LAIN * side.slack
+        };
+        let stays = !is_zero(crease.along) || is_zero(before);
+        (stays && crease.sides.iter().all(lies)).then(|| {
+            self.go_along(&crease, &Arriving { place, during, before, slip, raised: Vec3::ZERO, acceleration })
+        })
+    }
+
+    /// Tells whether creases are for it. Where constraints have moved it, or springs lead a method on along a surface, it goes from hit to hit.
+    fn heeds_creases(&self) -> bool {
+        self.left.is_none() && self.obstacles.lead.is_none()
+    }
+
+    /// The elasticity and friction of it on a surface.
+    fn mixed(&self, material: Option<u16>) -> Mixed {
+        on_surface(self.obstacles.materials, self.elasticity, self.material, material)
+    }
+
+    /// The crease that an acceleration presses it into, if it leaves that with such a velocity for no longer than a rest.
+    fn crease(&self, place: Vec3, slack: f32, now: Time, acceleration: Vec3, after: Vec3) -> Option<Crease> {
+        let crease = self.walls.crease(place, self.radius + LAIN * slack, now, acceleration)?;
+        let rest = RESTING * self.dt;
+        let rests = |(side, closing): (&Contact, f32)| {
+            let across = dot(after, side.normal);
+            let leaving = if across < 0.0 { -across * self.mixed(side.material).elasticity } else { across };
+            2.0 * leaving < rest * closing
+        };
+        let is_held = !is_zero(crease.along) || 2.0 * length(after) < rest * length(acceleration);
+        (is_held && crease.sides.iter().zip(crease.closing).all(rests)).then_some(crease)
+    }
+
+    /// The way along a crease, which is told to whoever wants to know.
+    fn go_along(&mut self, crease: &Crease, arriving: &Arriving) -> Path {
+        let Arriving { place, during, before, slip, raised, acceleration } = *arriving;
+        let frictions = crease.sides.map(|side| self.mixed(side.material).friction);
+        let pressing = crease.pressing[0] + crease.pressing[1];
+        let mean = |of: fn(&Friction) -> f32| {
+            (of(&frictions[0]) * crease.pressing[0] + of(&frictions[1]) * crease.pressing[1]) / pressing
+        };
+        let friction =
+            Friction { static_: mean(|friction| friction.static_), kinetic: mean(|friction| friction.kinetic) };
+        let drive = within(crease, acceleration);
+        let rest = (during[1] - during[0]).seconds();
+        let (way, end) = Slide { velocity: slip, drive, pressing, friction }.after(rest);
+        self.report.hits += 1;
+        let (id, row, mass, time) = (self.id, self.row, self.mass, during[0]);
+        if let Some(observer) = &mut self.observer {
+            let mut before = before;
+            for side in &crease.sides {
+                let (normal, place) = (side.normal, side.point);
+                let closing = max(-dot(before, normal), 0.0);
+                let surface = Vec3::ZERO;
+                observer.hit(&Impact {
+                    id,
+                    row,
+                    other: None,
+                    mass,
+                    place,
+                    normal,
+                    closing,
+                    before,
+                    after: slip,
+                    surface,
+                    time,
+                });
+                before = slip;
+            }
+            let world = [acceleration, way, slip, end];
+            observer.slid(&Sliding { mass, raised, world, along: [drive, way, slip, end] });
+        }
+        Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during, pull: Some(acceleration) }
+    }
+}
+
+/// The part of a vector that leads along a crease.
+fn within(crease: &Crease, vector: Vec3) -> Vec3 {
+    scaled(crease.along, dot(crease.along, vector))
+}
