@@ -10,7 +10,7 @@ use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
 use crate::math::{along, dot, is_zero, length, max, minus, plus, scaled};
 use crate::observe::{Impact, Sliding};
-use crate::shape::{Collider, Contact, Crease, Hit};
+use crate::shape::{Collider, Contact, Crease, Hit, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -41,6 +41,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let now = path.instant(meeting.time);
         let came = along(before, normal, -incoming);
         let crease = self.crease(place, slack, now, pull, along(came, normal, outgoing))?;
+        let place = self.off_both(&crease, meeting.chord.from, place, now);
         let came = within(&crease, came);
         let slip = plus(came, within(&crease, mixed.friction.answer(came, -incoming)));
         let until = Until { path, place: meeting.place, now, acceleration: pull };
@@ -91,6 +92,18 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         };
         let is_held = !is_zero(crease.along) || 2.0 * length(after) < rest * length(acceleration);
         (is_held && crease.sides.iter().zip(crease.closing).all(rests)).then_some(crease)
+    }
+
+    /// A place in a crease that is off both sides as what rests is, if the way there is free from where the path has come.
+    fn off_both(&self, crease: &Crease, from: Vec3, place: Vec3, now: Time) -> Vec3 {
+        let [a, b] = &crease.sides;
+        let cosine = dot(a.normal, b.normal);
+        let [near_a, near_b] = [a, b].map(|side| max(2.0 * side.slack - (side.distance - self.radius), 0.0));
+        let across = 1.0 - cosine * cosine;
+        let to = along(place, a.normal, (near_a - cosine * near_b) / across);
+        let to = along(to, b.normal, (near_b - cosine * near_a) / across);
+        let way = Segment { from, to, radius: self.radius, during: [now; 2] };
+        if self.walls.first_hit(&way).is_none() { to } else { place }
     }
 
     /// The way along a crease, which is told to whoever wants to know.

@@ -28,7 +28,9 @@ impl Groove {
 
     /// One that lies in it, with such a speed along it.
     fn lying(&self, radius: f32, elasticity: f32, speed: f32) -> Particle {
-        let position = self.home + self.axes[1] * (radius / self.half.sin());
+        // Off both by several roundings, on the side where it is to be.
+        let beside = 8.0 * f32::EPSILON * (1.0 + self.home.abs().max_element());
+        let position = self.home + self.axes[1] * ((radius + beside) / self.half.sin());
         Particle { position, velocity: self.axes[2] * speed, radius, elasticity, ..Particle::REST }
     }
 }
@@ -65,7 +67,7 @@ fn ends(
     let mut system = started(&scene, 1, 1);
     run(&mut system, &scene, h, (end / h).round() as u32);
     let all = system.particles();
-    ([all.position[0], all.velocity[0]], system.totals())
+    ([all.position[0], all.velocity[0]], *system.totals())
 }
 
 /// Whatever the angle between its sides, what lies in a groove goes along it as on a plane, pressed by both sides together, whichever way it leans; hits
@@ -76,7 +78,7 @@ fn grooves_lead_down_by_coulomb_s_law() {
     for half in [0.1f32, 0.5, 0.7854, 1.3] {
         for &method in Method::ALL {
             for h in [1.0 / 24.0, 1.0 / 60.0, 1.0 / 240.0] {
-                for (radius, far, elasticity) in [(0.0, 0.0, 0.5), (0.1, 3.0, 0.0), (0.0, 100.0, 0.8)] {
+                for (radius, far, elasticity) in [(0.0, 0.0, 0.5), (0.1, 3.0, 0.0), (0.0, 10.0, 0.8)] {
                     let turn = random.vector(3.0).to_array();
                     let [slope, lean, speed] =
                         [(0.1, 1.2), (-0.9, 0.9), (0.0, 2.0)].map(|(low, high)| random.between(low, high));
@@ -105,7 +107,8 @@ fn grooves_lead_down_by_coulomb_s_law() {
                         let first = 2.0 * (rate.abs() + speed) * h as f32;
                         assert!(
                             off_fast < 0.01 * (speed + rate.abs() * 0.5) + first * 0.1,
-                            "{case}: {off_fast} m/s off {fast}"
+                            "{case}: {off_fast} m/s off {fast}, {report:?} {:?} {turn:?}",
+                            groove.axes.map(|axis| [axis.dot(x), axis.dot(v)])
                         );
                         assert!(off_way < 0.01 * way + 0.5 * first * 0.5 + 1e-4, "{case}: {off_way} m off {way}");
                         assert_eq!(report.caps.bounces, 0, "{case}: {}", report.hits);
@@ -122,7 +125,7 @@ fn corners_hold_what_is_pressed_into_them() {
     let (mut cases, mut random) = (0, Random::new(4));
     for &method in Method::ALL {
         for h in [1.0 / 24.0, 1.0 / 60.0, 1.0 / 240.0] {
-            for (radius, far, elasticity) in [(0.0, 0.0, 0.5), (0.1, 3.0, 0.0), (0.0, 100.0, 0.9)] {
+            for (radius, far, elasticity) in [(0.0, 0.0, 0.5), (0.1, 3.0, 0.0), (0.0, 10.0, 0.9)] {
                 let ([out, into], turn) =
                     ([(); 2].map(|()| random.vector(1.0).abs() + 0.05), random.vector(3.0).to_array());
                 if !is_run(&mut cases) {
