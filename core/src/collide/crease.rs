@@ -14,6 +14,12 @@ use crate::shape::{Collider, Contact, Crease, Hit, Segment};
 use crate::time::Time;
 use glam::Vec3;
 
+/// How much deeper it has come than where its path began, at the most, which is in a crease already \[slacks\].
+pub(super) const HOP: f32 = 16.0;
+
+/// How far rounding lets something fall in a crease \[slacks\].
+pub(super) const ROOM: f32 = 16.0;
+
 /// How something comes into a crease: from where it goes on along that and from when, with which velocity, of which so much is left, and what drives it.
 struct Arriving {
     place: Vec3,
@@ -25,23 +31,30 @@ struct Arriving {
 }
 
 impl<C: Collider + ?Sized> Sweep<'_, C> {
-    /// The way on from a hit of what has slid along another surface into the one that it hits, and leaves neither for longer than a rest.
+    /// The way on from a hit of what has slid along another surface into the one that it hits, or has hardly come off that, and leaves neither for longer than a
+    /// rest.
     #[inline(never)]
     pub(super) fn into_crease(&mut self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<Path> {
         let Hit { normal, velocity: surface, slack, material, .. } = meeting.hit;
-        let pull = path.pull.filter(|_| self.heeds_creases() && is_zero(surface))?;
+        let (pull, hop) = (path.drive(), dot(minus(meeting.place, path.x0), normal));
+        let is_near = path.pull.is_some() || hop.abs() <= HOP * slack;
+        if !(is_near && self.heeds_creases() && is_zero(surface)) {
+            return None;
+        }
         let before = path.velocity(meeting.time);
         let mixed = self.mixed(material);
         let incoming = dot(before, normal);
         let outgoing = -incoming * mixed.elasticity;
         // Most bounce: nothing more has to be known of those.
-        if !(incoming < 0.0 && 2.0 * outgoing < RESTING * self.dt * length(pull)) {
+        let pulled = length(pull);
+        let is_slow = 2.0 * outgoing < RESTING * self.dt * pulled || outgoing * outgoing <= ROOM * slack * pulled;
+        if !(incoming < 0.0 && is_slow) {
             return None;
         }
         let now = path.instant(meeting.time);
         let came = along(before, normal, -incoming);
         let crease = self.crease(place, slack, now, pull, along(came, normal, outgoing))?;
-        let place = self.off_both(&crease, meeting.chord.from, place, now);
+        let place = self.off_both(&crease, [place; 2], now).unwrap_or(place);
         let came = within(&crease, came);
         let slip = plus(came, within(&crease, mixed.friction.answer(came, -incoming)));
         let until = Until { path, place: meeting.place, now, acceleration: pull };
@@ -60,15 +73,16 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             return None;
         }
         let crease = self.crease(place, slack, during[0], acceleration, before)?;
-        let slip = within(&crease, before);
-        let lies = |side: &Contact| {
-            side.distance - self.radius >= 0.5 * side.slack
-                && dot(before, side.normal).abs() * path.duration() <= LAIN * side.slack
-        };
-        let stays = !is_zero(crease.along) || is_zero(before);
-        (stays && crease.sides.iter().all(lies)).then(|| {
-            self.go_along(&crease, &Arriving { place, during, before, slip, raised: Vec3::ZERO, acceleration })
-        })
+        let lies = |side: &Contact| dot(before, side.normal).abs() * path.duration() <= LAIN * side.slack;
+        if is_zero(crease.along) && !is_zero(before) || !crease.sides.iter().all(lies) {
+            return None;
+        }
+        // Far from the origin rounding is larger: what has come from nearer to it is too close to them.
+        let is_close = |side: &Contact| side.distance - self.radius < 0.5 * side.slack;
+        let raised = crease.sides.iter().any(is_close).then(|| self.off_both(&crease, [place; 2], during[0]));
+        let beside = raised.flatten().unwrap_or(place);
+        let (slip, raised) = (within(&crease, before), minus(beside, place));
+        Some(self.go_along(&crease, &Arriving { place: beside, during, before, slip, raised, acceleration }))
     }
 
     /// Tells whether creases are for it. Where constraints have moved it, or springs lead a method on along a surface, it goes from hit to hit.
@@ -84,26 +98,42 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The crease that an acceleration presses it into, if it leaves that with such a velocity for no longer than a rest.
     fn crease(&self, place: Vec3, slack: f32, now: Time, acceleration: Vec3, after: Vec3) -> Option<Crease> {
         let crease = self.walls.crease(place, self.radius + LAIN * slack, now, acceleration)?;
-        let rest = RESTING * self.dt;
+        let (rest, pulled) = (RESTING * self.dt, length(acceleration));
+        // What rounding has set it off by gives it as much, and would never let it rest.
+        let given = ROOM * slack * pulled;
         let rests = |(side, closing): (&Contact, f32)| {
             let across = dot(after, side.normal);
             let leaving = if across < 0.0 { -across * self.mixed(side.material).elasticity } else { across };
-            2.0 * leaving < rest * closing
+            2.0 * leaving < rest * closing || leaving * leaving <= given
         };
-        let is_held = !is_zero(crease.along) || 2.0 * length(after) < rest * length(acceleration);
+        let is_held = !is_zero(crease.along) || 2.0 * length(after) < rest * pulled || dot(after, after) <= given;
         (is_held && crease.sides.iter().zip(crease.closing).all(rests)).then_some(crease)
     }
 
-    /// A place in a crease that is off both sides as what rests is, if the way there is free from where the path has come.
-    fn off_both(&self, crease: &Crease, from: Vec3, place: Vec3, now: Time) -> Vec3 {
+    /// A place beside a hit, off both sides of the crease that this leads deeper into, as they are at a place near it that may be between them by rounding alone; that
+    /// itself, if there is none.
+    #[inline(never)]
+    pub(super) fn off_crease(&self, path: &Path, meeting: &Meeting, near: Vec3) -> Vec3 {
+        let Meeting { time, place, ref hit, .. } = *meeting;
+        let (now, reach) = (path.instant(time), self.radius + LAIN * hit.slack);
+        let crease = self.walls.crease(near, reach, now, path.velocity(time));
+        crease.and_then(|crease| self.off_both(&crease, [near, place], now)).unwrap_or(near)
+    }
+
+    /// The second of two places, raised off both sides of a crease, as they are at the first, by as much as what rests on one is; none, if there is no free way from the
+    /// one to the other.
+    fn off_both(&self, crease: &Crease, [from, place]: [Vec3; 2], now: Time) -> Option<Vec3> {
         let [a, b] = &crease.sides;
         let cosine = dot(a.normal, b.normal);
-        let [near_a, near_b] = [a, b].map(|side| max(2.0 * side.slack - (side.distance - self.radius), 0.0));
+        let [near_a, near_b] = [a, b].map(|side| {
+            let gap = side.distance - self.radius + dot(minus(place, from), side.normal);
+            max(2.0 * side.slack - gap, 0.0)
+        });
         let across = 1.0 - cosine * cosine;
         let to = along(place, a.normal, (near_a - cosine * near_b) / across);
         let to = along(to, b.normal, (near_b - cosine * near_a) / across);
         let way = Segment { from, to, radius: self.radius, during: [now; 2] };
-        if self.walls.first_hit(&way).is_none() { to } else { place }
+        self.walls.first_hit(&way).is_none().then_some(to)
     }
 
     /// The way along a crease, which is told to whoever wants to know.

@@ -310,11 +310,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
                 let down = Segment { from: raised, to: beside, during: [now; 2], ..*chord };
                 let surface = self.walls.first_hit(&down).filter(|_| moves);
                 let off = surface.map(|there| along(down.at(there.time), there.normal, 2.0 * there.slack));
-                return off.filter(|&off| free(aside(off))).unwrap_or(before);
+                return off.filter(|&off| free(aside(off))).unwrap_or_else(|| self.off_crease(path, meeting, before));
             }
             back *= 4.0;
         }
-        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
+        let from = self.walls.carry(chord.from, self.radius, [chord.during[0], now]);
+        self.off_crease(path, meeting, from)
     }
 }
 
