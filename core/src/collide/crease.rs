@@ -34,7 +34,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The way on from a hit of what has slid along another surface into the one that it hits, or has hardly come off that, and leaves neither for longer than a
     /// rest.
     #[inline(never)]
-    pub(super) fn into_crease(&mut self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<Path> {
+    pub(super) fn along_crease(&mut self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<Path> {
         let Hit { normal, velocity: surface, slack, material, .. } = meeting.hit;
         let (pull, hop) = (path.drive(), dot(minus(meeting.place, path.x0), normal));
         let is_near = path.pull.is_some() || hop.abs() <= HOP * slack;

@@ -296,7 +296,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         deeper.abs().simd_le(all(2.0 * SMOOTH) * hits.slack) & is_slow
     }
 
-    /// Those that slide into another surface, or hardly leave one, and hardly bounce off it, which may be in a crease, as `into_crease` has it.
+    /// Those that slide into another surface, or hardly leave one, and hardly bounce off it, which may be in a crease, as `along_crease` has it.
     #[inline(always)]
     fn may_be_held(&self, (paths, slides): (&Paths<F>, &Slides<F>), incoming: F, meetings: &Meetings<F>, dt: f32) -> F {
         let all = |x| incoming.all(x);

@@ -83,7 +83,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
         let beside = self.set_off(path, meeting, meeting.place);
-        if let Some(along) = self.into_crease(path, meeting, beside) {
+        if let Some(along) = self.along_crease(path, meeting, beside) {
             return along;
         }
         let is_turned = self.is_turned(path, meeting);
