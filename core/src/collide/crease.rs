@@ -55,8 +55,9 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let came = along(before, normal, -incoming);
         let crease = self.crease(place, slack, now, pull, along(came, normal, outgoing))?;
         let place = self.off_both(&crease, [place; 2], now).unwrap_or(place);
-        let came = within(&crease, came);
-        let slip = plus(came, within(&crease, mixed.friction.answer(came, -incoming)));
+        let came = within(&crease, before);
+        let (friction, press) = self.friction(&crease, pushes(&crease, before));
+        let slip = plus(came, friction.answer(came, press));
         let until = Until { path, place: meeting.place, now, acceleration: pull };
         let acceleration = self.onward(&until, slip).mean;
         let raised = minus(place, meeting.place);
@@ -100,13 +101,14 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let crease = self.walls.crease(place, self.radius + LAIN * slack, now, acceleration)?;
         let (rest, pulled) = (RESTING * self.dt, length(acceleration));
         // What rounding has set it off by gives it as much, and would never let it rest.
-        let given = ROOM * slack * pulled;
+        let room = ROOM * slack;
         let rests = |(side, closing): (&Contact, f32)| {
             let across = dot(after, side.normal);
             let leaving = if across < 0.0 { -across * self.mixed(side.material).elasticity } else { across };
-            2.0 * leaving < rest * closing || leaving * leaving <= given
+            2.0 * leaving < rest * closing || leaving * leaving <= room * closing
         };
-        let is_held = !is_zero(crease.along) || 2.0 * length(after) < rest * pulled || dot(after, after) <= given;
+        let is_held =
+            !is_zero(crease.along) || 2.0 * length(after) < rest * pulled || dot(after, after) <= room * pulled;
         (is_held && crease.sides.iter().zip(crease.closing).all(rests)).then_some(crease)
     }
 
@@ -136,16 +138,18 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         self.walls.first_hit(&way).is_none().then_some(to)
     }
 
+    /// The friction of both sides of a crease that press so hard, and their sum.
+    fn friction(&self, crease: &Crease, presses: [f32; 2]) -> (Friction, f32) {
+        let [a, b] = crease.sides.map(|side| self.mixed(side.material).friction);
+        let press = presses[0] + presses[1];
+        let mean = |a: f32, b: f32| if press > 0.0 { (a * presses[0] + b * presses[1]) / press } else { 0.0 };
+        (Friction { static_: mean(a.static_, b.static_), kinetic: mean(a.kinetic, b.kinetic) }, press)
+    }
+
     /// The way along a crease, which is told to whoever wants to know.
     fn go_along(&mut self, crease: &Crease, arriving: &Arriving) -> Path {
         let Arriving { place, during, before, slip, raised, acceleration } = *arriving;
-        let frictions = crease.sides.map(|side| self.mixed(side.material).friction);
-        let pressing = crease.pressing[0] + crease.pressing[1];
-        let mean = |of: fn(&Friction) -> f32| {
-            (of(&frictions[0]) * crease.pressing[0] + of(&frictions[1]) * crease.pressing[1]) / pressing
-        };
-        let friction =
-            Friction { static_: mean(|friction| friction.static_), kinetic: mean(|friction| friction.kinetic) };
+        let (friction, pressing) = self.friction(crease, crease.pressing);
         let drive = within(crease, acceleration);
         let rest = (during[1] - during[0]).seconds();
         let (way, end) = Slide { velocity: slip, drive, pressing, friction }.after(rest);
@@ -177,6 +181,14 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         }
         Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during, pull: Some(acceleration) }
     }
+}
+
+/// How hard each side of a crease pushes what comes into it with such a velocity and leaves neither \[m/s\].
+fn pushes(crease: &Crease, velocity: Vec3) -> [f32; 2] {
+    let [a, b] = &crease.sides;
+    let (cosine, [on_a, on_b]) = (dot(a.normal, b.normal), [a, b].map(|side| -dot(velocity, side.normal)));
+    let across = 1.0 - cosine * cosine;
+    [on_a - cosine * on_b, on_b - cosine * on_a].map(|push| max(push / across, 0.0))
 }
 
 /// The part of a vector that leads along a crease.

@@ -10,6 +10,10 @@ const MOST: usize = 6;
 /// The least square of the sine between two surfaces: others are one.
 const FLAT: f32 = 1e-6;
 
+/// The largest cosine between two surfaces of a crease: of those that open farther nobody is driven from the one to the other for long, and an edge of a mesh, past
+/// which something goes, leans on nobody from as far aside.
+const OPEN: f32 = 0.05;
+
 /// The share of an acceleration that may lead into a surface by rounding.
 const ROUNDING: f32 = 1e-4;
 
@@ -75,7 +79,8 @@ fn between(a: &Contact, b: &Contact, acceleration: Vec3) -> Option<Crease> {
     let across = 1.0 - cosine * cosine;
     let [on_a, on_b] = [a, b].map(|side| -dot(acceleration, side.normal));
     let closing = [on_a - cosine * on_b, on_b - cosine * on_a];
-    (across > FLAT && closing[0] > 0.0 && closing[1] > 0.0).then(|| Crease {
+    let are_two = across > FLAT && cosine < OPEN;
+    (are_two && closing[0] > 0.0 && closing[1] > 0.0).then(|| Crease {
         along: unit(a.normal.cross(b.normal)),
         sides: [*a, *b],
         pressing: closing.map(|closing| closing / across),
