@@ -82,11 +82,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     ///
     /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
-        let beside = self.set_off(path, meeting, meeting.place);
-        if let Some(along) = self.along_crease(path, meeting, beside) {
-            return along;
-        }
-        let is_turned = self.is_turned(path, meeting);
+        let (beside, is_turned) = (self.set_off(path, meeting, meeting.place), self.is_turned(path, meeting));
         self.leave(path, meeting, beside, is_turned)
     }
 
@@ -172,7 +168,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 
     /// How it goes on with another velocity. What constraints have moved is driven by the velocity that they have left it.
     #[cfg_attr(one_by_one, inline(never))]
-    pub(super) fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
+    fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
         let air = self.air.filter(|_| self.left.is_none());
         air.map_or(until.unchanged(), |air| air.onward(until, velocity))
     }
@@ -310,12 +306,11 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
                 let down = Segment { from: raised, to: beside, during: [now; 2], ..*chord };
                 let surface = self.walls.first_hit(&down).filter(|_| moves);
                 let off = surface.map(|there| along(down.at(there.time), there.normal, 2.0 * there.slack));
-                return off.filter(|&off| free(aside(off))).unwrap_or_else(|| self.off_crease(path, meeting, before));
+                return off.filter(|&off| free(aside(off))).unwrap_or(before);
             }
             back *= 4.0;
         }
-        let from = self.walls.carry(chord.from, self.radius, [chord.during[0], now]);
-        self.off_crease(path, meeting, from)
+        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
     }
 }
 

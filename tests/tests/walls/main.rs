@@ -4,7 +4,6 @@ mod balls;
 mod blocks;
 mod bounces;
 mod braked;
-mod creases;
 mod elastic;
 mod heights;
 mod lying;
