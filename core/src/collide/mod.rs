@@ -1,6 +1,7 @@
 //! Collision: every path of the step is followed to its first hit, answered, and followed on with the time left.
 
 mod air;
+mod crease;
 mod event_driven;
 mod images;
 mod impulse;

@@ -10,6 +10,7 @@ mod paths;
 mod things;
 mod walls;
 
+use super::crease::{HOP, ROOM};
 use super::sweep::{LAIN, RESTING};
 use super::turn::{LOSS, SMOOTH, STEEP};
 use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, negated, not};
@@ -262,8 +263,11 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
             }
             rounds += 1;
             if walls.face().is_none() {
-                // What may be turned by a curve is followed by itself.
-                clear = clear & not(hit & self.may_be_turned(&onward, &cubics, &meetings.hits));
+                // What may be turned by a curve, or held by two surfaces, is followed by itself.
+                let incoming = onward.velocity(&cubics, meetings.hits.time).dot(meetings.hits.normal);
+                let alone = self.may_be_turned(&onward, incoming, &meetings.hits)
+                    | self.may_be_held((&onward, &slides), incoming, &meetings, step.seconds());
+                clear = clear & not(hit & alone);
                 hit = hit & clear;
             }
             *hits = hit.to_bitmask();
@@ -285,12 +289,24 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
 
     /// Those whose hits may be some of a chain along one surface, as `turn` has it.
     #[inline(always)]
-    fn may_be_turned(&self, paths: &Paths<F>, cubics: &Cubics<F>, hits: &Hits<F>) -> F {
-        let (all, like) = (|x| hits.time.all(x), hits.time);
-        let incoming = paths.velocity(cubics, like).dot(hits.normal);
-        let deeper = paths.time * like * incoming * max(all(1.0) - max(self.elasticity, all(0.0)), all(LOSS));
+    fn may_be_turned(&self, paths: &Paths<F>, incoming: F, hits: &Hits<F>) -> F {
+        let all = |x| incoming.all(x);
+        let deeper = paths.time * hits.time * incoming * max(all(1.0) - max(self.elasticity, all(0.0)), all(LOSS));
         let is_slow = (all(STEEP) * (incoming * incoming)).simd_le(paths.v0.dot(paths.v0));
         deeper.abs().simd_le(all(2.0 * SMOOTH) * hits.slack) & is_slow
+    }
+
+    /// Those that slide into another surface, or hardly leave one, and hardly bounce off it, which may be in a crease, as `along_crease` has it.
+    #[inline(always)]
+    fn may_be_held(&self, (paths, slides): (&Paths<F>, &Slides<F>), incoming: F, meetings: &Meetings<F>, dt: f32) -> F {
+        let all = |x| incoming.all(x);
+        let outgoing = negated(incoming) * max(self.elasticity, all(0.0));
+        let hop = (meetings.place - paths.x0).dot(meetings.hits.normal);
+        let are_near = slides.are | hop.abs().simd_le(all(HOP) * meetings.hits.slack);
+        let (pulled, slack) = (slides.drive(paths).length(), meetings.hits.slack);
+        let are_fast = (all(2.0) * outgoing).simd_gt(all(RESTING * dt) * pulled)
+            & (outgoing * outgoing).simd_gt(all(ROOM) * slack * pulled);
+        are_near & not(are_fast)
     }
 
     /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, those of them that slide, and whose are free.

@@ -82,7 +82,11 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     ///
     /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
-        let (beside, is_turned) = (self.set_off(path, meeting, meeting.place), self.is_turned(path, meeting));
+        let beside = self.set_off(path, meeting, meeting.place);
+        if let Some(along) = self.along_crease(path, meeting, beside) {
+                return along;
+        }
+        let is_turned = self.is_turned(path, meeting);
         self.leave(path, meeting, beside, is_turned)
     }
 
@@ -125,7 +129,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         // A surface that moves within itself turns what it has no hold of as if it stood still; of those that move otherwise nothing is known.
         let is_turned = is_turned && (belt.is_some() || is_zero(meeting.hit.velocity));
         let answer = Answer { raised: minus(beside, place), speeds: [incoming, outgoing], rests };
-        let gain = answer.gain(mean, is_turned, path.pull.is_some());
+        let pays = path.pull.is_some() || length(answer.raised) > LAIN * meeting.hit.slack;
+        let gain = answer.gain(mean, is_turned, pays);
         if gain != 0.0 {
             let carried = belt.filter(|_| is_turned).map_or(Vec3::ZERO, |_| aside(surface, normal));
             slip = minus(gaining(plus(slip, carried), gain), carried);
@@ -168,7 +173,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 
     /// How it goes on with another velocity. What constraints have moved is driven by the velocity that they have left it.
     #[cfg_attr(one_by_one, inline(never))]
-    fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
+    pub(super) fn onward(&self, until: &Until<'_>, velocity: Vec3) -> Onward {
         let air = self.air.filter(|_| self.left.is_none());
         air.map_or(until.unchanged(), |air| air.onward(until, velocity))
     }
@@ -306,11 +311,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
                 let down = Segment { from: raised, to: beside, during: [now; 2], ..*chord };
                 let surface = self.walls.first_hit(&down).filter(|_| moves);
                 let off = surface.map(|there| along(down.at(there.time), there.normal, 2.0 * there.slack));
-                return off.filter(|&off| free(aside(off))).unwrap_or(before);
+                return off.filter(|&off| free(aside(off))).unwrap_or_else(|| self.off_crease(path, meeting, before));
             }
             back *= 4.0;
         }
-        self.walls.carry(chord.from, self.radius, [chord.during[0], now])
+        let from = self.walls.carry(chord.from, self.radius, [chord.during[0], now]);
+        self.off_crease(path, meeting, from)
     }
 }
 

@@ -155,7 +155,10 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     #[inline(never)]
     pub(super) fn lying(&mut self, path: &Path) -> Option<(Path, f32)> {
         let acceleration = path.acceleration();
-        let seat = self.seat(path, acceleration)?;
+        let (seat, faces) = self.seat(path, acceleration)?;
+        if faces > 1 {
+            return self.lying_in_crease(path, &seat).map(|along| (along, seat.slack));
+        }
         let mixed = on_surface(self.obstacles.materials, self.elasticity, self.material, seat.material);
         let (normal, time) = (seat.normal, path.during[0]);
         let (incoming, pressing) = (dot(path.v0, normal), -dot(acceleration, normal));
@@ -192,7 +195,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
 
     /// The surface that a path begins on, if it leaves that only to come back to it within the step. The place is within rounding
     /// of it, but not within that of being behind it.
-    fn seat(&self, path: &Path, acceleration: Vec3) -> Option<Contact> {
+    fn seat(&self, path: &Path, acceleration: Vec3) -> Option<(Contact, u32)> {
         let time = path.duration();
         let fall = |acceleration: f32| 0.5 * acceleration * time * time;
         let (mut faces, mut seat) = (0, None);
@@ -201,12 +204,15 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             faces += 1;
             seat = Some(*contact);
         });
-        let seat = seat.filter(|seat| faces == 1 && is_zero(seat.velocity))?;
+        let seat = seat.filter(|seat| is_zero(seat.velocity))?;
+        if faces > 1 {
+            return Some((seat, faces));
+        }
         let (gap, slack) = (seat.distance - self.radius, seat.slack);
         let (leaving, pressing) = (dot(path.v0, seat.normal).abs(), -dot(acceleration, seat.normal));
         let is_there = gap >= 0.5 * slack && gap <= LAIN * slack && fall(pressing) > gap;
         let rests = leaving * time <= LAIN * slack && 2.0 * leaving < RESTING * self.dt * pressing;
-        (is_there && rests).then_some(seat)
+        (is_there && rests).then_some((seat, faces))
     }
 
     /// On a path, past as many hits as there may be; the slack is that of the surface along which it goes, if it goes along one.

@@ -6,7 +6,7 @@
 use super::path::Path;
 use super::sweep::{LAIN, Meeting, Sweep};
 use crate::material::on_surface;
-use crate::math::{along, dot, is_zero, length, max, minus, scaled, sqrt};
+use crate::math::{along, dot, is_zero, length, max, min, minus, scaled, sqrt};
 use crate::shape::{Collider, Contact, Hit};
 use crate::time::Time;
 use glam::Vec3;
@@ -31,14 +31,14 @@ pub(super) struct Answer {
 
 impl Answer {
     /// The gain in the square of the speed along the surface under such an acceleration \[m²/s²\] where the hit is one of a chain. What bounces pays by its bounce for
-    /// being raised; what slides into another surface pays, too: it would otherwise rise by as much in each step for nothing.
+    /// being raised; what slides into another surface, or is sent far back, pays for the rest, too: it would otherwise rise by as much in each step for nothing.
     #[cfg_attr(one_by_one, inline(never))]
-    pub(super) fn gain(&self, acceleration: Vec3, is_turned: bool, slid: bool) -> f32 {
+    pub(super) fn gain(&self, acceleration: Vec3, is_turned: bool, pays: bool) -> f32 {
         let ([incoming, outgoing], raising) = (self.speeds, 2.0 * dot(acceleration, self.raised));
-        let raising = if self.rests { raising } else { 0.0 };
+        let unpaid = if self.rests { raising } else { min(outgoing * outgoing + raising, 0.0) };
         match () {
-            () if is_turned => incoming * incoming - outgoing * outgoing + raising,
-            () if slid && raising < 0.0 => raising,
+            () if is_turned => incoming * incoming - outgoing * outgoing + if self.rests { raising } else { 0.0 },
+            () if pays && unpaid < 0.0 => unpaid,
             () => 0.0,
         }
     }

@@ -1,7 +1,8 @@
 //! Things that a moving point can run into, one by one or in lists.
 
+use super::crease::Leans;
 use super::hit::earlier;
-use super::{Aabb, Affine, Clearance, Contact, Face, Facing, Hit, Hulls, Marks, Ride, Segment, Solid};
+use super::{Aabb, Affine, Clearance, Contact, Crease, Face, Facing, Hit, Hulls, Marks, Ride, Segment, Solid};
 use crate::math::{along, dot, minus};
 use crate::time::Time;
 use glam::Vec3;
@@ -99,6 +100,14 @@ pub trait Collider: Sync {
     /// of its faces: what a ball there leans on, or is about to. None by default, which leaves all to `first_hit`.
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         let _ = (center, reach, at, visit);
+    }
+
+    /// The crease that an acceleration presses what leans on all within `reach` \[m\] of `center` into at an instant: where two of them meet, or more; the sharpest, if
+    /// that is not known. None, where any of those moves. By default it is sought among the contacts; what has no two surfaces that meet need not look.
+    fn crease(&self, center: Vec3, reach: f32, at: Time, acceleration: Option<Vec3>) -> Option<Crease> {
+        let mut leans = Leans::NONE;
+        self.contacts(center, reach, at, &mut |contact| leans.add(contact));
+        leans.crease(acceleration)
     }
 
     /// Where a ball that waits at `point` is by the end of a span, if what moves would run over it and takes it along.
@@ -214,6 +223,9 @@ impl Collider for () {
     fn facing(&self, _: &Aabb) -> Facing {
         Facing::Nothing
     }
+    fn crease(&self, _: Vec3, _: f32, _: Time, _: Option<Vec3>) -> Option<Crease> {
+        None
+    }
     fn is_empty(&self) -> bool {
         true
     }
@@ -244,6 +256,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     }
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
+    }
+    fn crease(&self, center: Vec3, reach: f32, at: Time, acceleration: Option<Vec3>) -> Option<Crease> {
+        (**self).crease(center, reach, at, acceleration)
     }
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
         (**self).carry(point, radius, during)

@@ -1,7 +1,7 @@
 //! An infinite plane.
 
 use super::ball::leaning;
-use super::{Aabb, Affine, Collider, Contact, Face, Hit, Mapped, Segment, Spot, Surface};
+use super::{Aabb, Affine, Collider, Contact, Crease, Face, Hit, Mapped, Segment, Spot, Surface};
 use crate::math::{clamp, dot, largest, max, minus, plus, scaled, unit};
 use crate::time::Time;
 use glam::Vec3;
@@ -41,6 +41,11 @@ impl Surface for Plane {
 impl Collider for Plane {
     fn moves(&self) -> bool {
         false
+    }
+
+    // It has one surface.
+    fn crease(&self, _: Vec3, _: f32, _: Time, _: Option<Vec3>) -> Option<Crease> {
+        None
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
@@ -97,6 +102,11 @@ impl Plane {
 impl Collider for Face {
     fn moves(&self) -> bool {
         false
+    }
+
+    // It has one surface.
+    fn crease(&self, _: Vec3, _: f32, _: Time, _: Option<Vec3>) -> Option<Crease> {
+        None
     }
 
     #[cfg_attr(not(one_by_one), inline(always))]

@@ -4,6 +4,7 @@ mod balls;
 mod blocks;
 mod bounces;
 mod braked;
+mod creases;
 mod elastic;
 mod heights;
 mod lying;

@@ -104,7 +104,7 @@ fn crossed<F: Lanes>(before: F, after: F) -> [F; 2] {
 }
 
 impl<F: Lanes> Seats<F> {
-    /// Has others besides, where there may have been any before: only one at a place is a seat.
+    /// Has others besides, where there may have been any before: only one at a place is a seat. Two may be a crease.
     #[inline(always)]
     pub(super) fn join(&mut self, others: Self, are_any: &mut F) {
         let are = others.are & not(*are_any);
@@ -112,7 +112,7 @@ impl<F: Lanes> Seats<F> {
         self.distance = are.select(others.distance, self.distance);
         self.slack = are.select(others.slack, self.slack);
         self.are = (self.are & not(others.are)) | are;
-        self.unclear = self.unclear | others.unclear;
+        self.unclear = self.unclear | others.unclear | (others.are & *are_any);
         *are_any = *are_any | others.are;
     }
 }

@@ -1,0 +1,205 @@
+//! Creases: what two surfaces press back at once goes along the line in which they meet, and what three do stays.
+//!
+//! From hit to hit it would go from the one to the other and back, some micrometres each time, as often as a step allows, and lose the rest of its way.
+
+use super::air::Until;
+use super::path::Path;
+use super::slide::Slide;
+use super::sweep::{LAIN, Meeting, RESTING, Sweep};
+use crate::force::Friction;
+use crate::material::{Mixed, on_surface};
+use crate::math::{along, dot, is_zero, length, max, minus, plus, scaled};
+use crate::observe::{Impact, Sliding};
+use crate::shape::{Collider, Contact, Crease, Hit, Segment};
+use crate::time::Time;
+use glam::Vec3;
+
+/// How much deeper it has come than where its path began, at the most, which is in a crease already \[slacks\].
+pub(super) const HOP: f32 = 16.0;
+
+/// How far rounding lets something fall in a crease \[slacks\].
+pub(super) const ROOM: f32 = 16.0;
+
+/// The least sine between a crease and a surface off which a place is raised along that.
+const STEEP: f32 = 0.1;
+
+/// How something comes into a crease: from where it goes on along that and from when, with which velocity, of which so much is left, and what drives it.
+struct Arriving {
+    place: Vec3,
+    during: [Time; 2],
+    before: Vec3,
+    slip: Vec3,
+    raised: Vec3,
+    acceleration: Vec3,
+}
+
+impl<C: Collider + ?Sized> Sweep<'_, C> {
+    /// The way on from a hit of what has slid along another surface into the one that it hits, or has hardly come off that, and leaves neither for longer than a
+    /// rest.
+    #[inline(never)]
+    pub(super) fn along_crease(&mut self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<Path> {
+        let Hit { normal, velocity: surface, slack, material, .. } = meeting.hit;
+        let (pull, hop) = (path.drive(), dot(minus(meeting.place, path.x0), normal));
+        let is_near = path.pull.is_some() || hop.abs() <= HOP * slack;
+        if !(is_near && self.heeds_creases() && is_zero(surface)) {
+            return None;
+        }
+        let before = path.velocity(meeting.time);
+        let mixed = self.mixed(material);
+        let incoming = dot(before, normal);
+        let outgoing = -incoming * mixed.elasticity;
+        // Most bounce: nothing more has to be known of those.
+        let pulled = length(pull);
+        let is_slow = 2.0 * outgoing < RESTING * self.dt * pulled || outgoing * outgoing <= ROOM * slack * pulled;
+        if !(incoming < 0.0 && is_slow) {
+            return None;
+        }
+        let now = path.instant(meeting.time);
+        let came = along(before, normal, -incoming);
+        let crease = self.crease(place, slack, now, pull, along(came, normal, outgoing))?;
+        let place = self.off_both(&crease, [place; 2], now).unwrap_or(place);
+        let came = within(&crease, before);
+        let (friction, press) = self.friction(&crease, pushes(&crease, before));
+        let slip = plus(came, friction.answer(came, press));
+        let until = Until { path, place: meeting.place, now, acceleration: pull };
+        let acceleration = self.onward(&until, slip).mean;
+        let raised = minus(place, meeting.place);
+        let during = [now, path.during[1]];
+        Some(self.go_along(&crease, &Arriving { place, during, before, slip, raised, acceleration }))
+    }
+
+    /// The way of what lies in a crease at the start of a path, and is pressed into it: along that, from its own place.
+    #[inline(never)]
+    pub(super) fn lying_in_crease(&mut self, path: &Path, side: &Contact) -> Option<Path> {
+        let (place, during, before, slack) = (path.x0, path.during, path.v0, side.slack);
+        let acceleration = path.acceleration();
+        if !self.heeds_creases() {
+            return None;
+        }
+        let crease = self.crease(place, slack, during[0], acceleration, before)?;
+        let lies = |side: &Contact| dot(before, side.normal).abs() * path.duration() <= LAIN * side.slack;
+        if is_zero(crease.along) && !is_zero(before) || !crease.sides.iter().all(lies) {
+            return None;
+        }
+        // Far from the origin rounding is larger: what has come from nearer to it is too close to them.
+        let is_close = |side: &Contact| side.distance - self.radius < 0.5 * side.slack;
+        let raised = crease.sides.iter().any(is_close).then(|| self.off_both(&crease, [place; 2], during[0]));
+        let beside = raised.flatten().unwrap_or(place);
+        let (slip, raised) = (within(&crease, before), minus(beside, place));
+        Some(self.go_along(&crease, &Arriving { place: beside, during, before, slip, raised, acceleration }))
+    }
+
+    /// Tells whether creases are for it. Where constraints have moved it, or springs lead a method on along a surface, it goes from hit to hit.
+    fn heeds_creases(&self) -> bool {
+        self.left.is_none() && self.obstacles.lead.is_none()
+    }
+
+    /// The elasticity and friction of it on a surface.
+    fn mixed(&self, material: Option<u16>) -> Mixed {
+        on_surface(self.obstacles.materials, self.elasticity, self.material, material)
+    }
+
+    /// The crease that an acceleration presses it into, if it leaves that with such a velocity for no longer than a rest.
+    fn crease(&self, place: Vec3, slack: f32, now: Time, acceleration: Vec3, after: Vec3) -> Option<Crease> {
+        let crease = self.walls.crease(place, self.radius + LAIN * slack, now, Some(acceleration))?;
+        let (rest, pulled) = (RESTING * self.dt, length(acceleration));
+        // What rounding has set it off by gives it as much, and would never let it rest.
+        let room = ROOM * slack;
+        let rests = |(side, closing): (&Contact, f32)| {
+            let across = dot(after, side.normal);
+            let leaving = if across < 0.0 { -across * self.mixed(side.material).elasticity } else { across };
+            2.0 * leaving < rest * closing || leaving * leaving <= room * closing
+        };
+        let is_held =
+            !is_zero(crease.along) || 2.0 * length(after) < rest * pulled || dot(after, after) <= room * pulled;
+        (is_held && crease.sides.iter().zip(crease.closing).all(rests)).then_some(crease)
+    }
+
+    /// A place beside a hit, off both sides of the crease, as they are at a place near it that may be between them by rounding alone; that
+    /// itself, if there is none.
+    #[inline(never)]
+    pub(super) fn off_crease(&self, path: &Path, meeting: &Meeting, near: Vec3) -> Vec3 {
+        let Meeting { time, place, ref hit, .. } = *meeting;
+        let (now, reach) = (path.instant(time), self.radius + LAIN * hit.slack);
+        let Some(crease) = self.walls.crease(near, reach, now, None) else { return near };
+        let off = |place| self.off_both(&crease, [near, place], now);
+        off(place).or_else(|| off(near)).unwrap_or(near)
+    }
+
+    /// The second of two places, raised off both sides of a crease, as they are at the first, by as much as what rests on one is; none, if there is no free way from the
+    /// one to the other.
+    fn off_both(&self, crease: &Crease, [from, place]: [Vec3; 2], now: Time) -> Option<Vec3> {
+        let [a, b] = &crease.sides;
+        let cosine = dot(a.normal, b.normal);
+        let [near_a, near_b] = [a, b].map(|side| {
+            let gap = side.distance - self.radius + dot(minus(place, from), side.normal);
+            max(2.0 * side.slack - gap, 0.0)
+        });
+        let across = 1.0 - cosine * cosine;
+        let to = along(place, a.normal, (near_a - cosine * near_b) / across);
+        let to = along(to, b.normal, (near_b - cosine * near_a) / across);
+        let way = |to| Segment { from, to, radius: self.radius, during: [now; 2] };
+        let Some(Hit { time, normal, slack, .. }) = self.walls.first_hit(&way(to)) else { return Some(to) };
+        // Along the crease it comes off a third surface, and stays as far off both sides.
+        let (deep, rising) = (dot(minus(to, way(to).at(time)), normal), dot(crease.along, normal));
+        let to = along(to, crease.along, (2.0 * slack - deep) / rising);
+        (rising.abs() > STEEP && self.walls.first_hit(&way(to)).is_none()).then_some(to)
+    }
+
+    /// The friction of both sides of a crease that press so hard, and their sum.
+    fn friction(&self, crease: &Crease, presses: [f32; 2]) -> (Friction, f32) {
+        let [a, b] = crease.sides.map(|side| self.mixed(side.material).friction);
+        let press = presses[0] + presses[1];
+        let mean = |a: f32, b: f32| if press > 0.0 { (a * presses[0] + b * presses[1]) / press } else { 0.0 };
+        (Friction { static_: mean(a.static_, b.static_), kinetic: mean(a.kinetic, b.kinetic) }, press)
+    }
+
+    /// The way along a crease, which is told to whoever wants to know.
+    fn go_along(&mut self, crease: &Crease, arriving: &Arriving) -> Path {
+        let Arriving { place, during, before, slip, raised, acceleration } = *arriving;
+        let (friction, pressing) = self.friction(crease, crease.pressing);
+        let drive = within(crease, acceleration);
+        let rest = (during[1] - during[0]).seconds();
+        let (way, end) = Slide { velocity: slip, drive, pressing, friction }.after(rest);
+        self.report.hits += 1;
+        let (id, row, mass, time) = (self.id, self.row, self.mass, during[0]);
+        if let Some(observer) = &mut self.observer {
+            let mut before = before;
+            for side in &crease.sides {
+                let (normal, place) = (side.normal, side.point);
+                let closing = max(-dot(before, normal), 0.0);
+                let surface = Vec3::ZERO;
+                observer.hit(&Impact {
+                    id,
+                    row,
+                    other: None,
+                    mass,
+                    place,
+                    normal,
+                    closing,
+                    before,
+                    after: slip,
+                    surface,
+                    time,
+                });
+                before = slip;
+            }
+            let world = [acceleration, way, slip, end];
+            observer.slid(&Sliding { mass, raised, world, along: [drive, way, slip, end] });
+        }
+        Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during, pull: Some(acceleration) }
+    }
+}
+
+/// How hard each side of a crease pushes what comes into it with such a velocity and leaves neither \[m/s\].
+fn pushes(crease: &Crease, velocity: Vec3) -> [f32; 2] {
+    let [a, b] = &crease.sides;
+    let (cosine, [on_a, on_b]) = (dot(a.normal, b.normal), [a, b].map(|side| -dot(velocity, side.normal)));
+    let across = 1.0 - cosine * cosine;
+    [on_a - cosine * on_b, on_b - cosine * on_a].map(|push| max(push / across, 0.0))
+}
+
+/// The part of a vector that leads along a crease.
+fn within(crease: &Crease, vector: Vec3) -> Vec3 {
+    scaled(crease.along, dot(crease.along, vector))
+}

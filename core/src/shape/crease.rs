@@ -1,0 +1,115 @@
+//! Creases, in which surfaces meet that something leans on at once.
+
+use super::Contact;
+use crate::math::{along, dot, is_zero, length, plus, scaled, unit};
+use glam::Vec3;
+
+/// The largest number of surfaces that something leans on in a crease.
+const MOST: usize = 6;
+
+/// The least square of the sine between two surfaces: others are one.
+const FLAT: f32 = 1e-6;
+
+/// The largest cosine between two surfaces of a crease: of those that open farther nobody is driven from the one to the other for long, and an edge of a mesh, past
+/// which something goes, leans on nobody from as far aside.
+const OPEN: f32 = 0.05;
+
+/// The share of an acceleration that may lead into a surface by rounding.
+const ROUNDING: f32 = 1e-4;
+
+/// A line in which two surfaces meet, or a corner of more, that something leans into: all that drives it into them they bear, as they stand still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crease {
+    /// The unit vector along the line; zero in a corner, from which nothing leads on.
+    pub along: Vec3,
+    /// Two of the surfaces, those of the line.
+    pub sides: [Contact; 2],
+    /// How hard each of them presses back \[m/s²\], and from how hard the other would be pressed alone \[m/s²\]: what slides along the one comes to the other
+    /// with that acceleration.
+    pub pressing: [f32; 2],
+    /// See `pressing`.
+    pub closing: [f32; 2],
+}
+
+/// Surfaces that something leans on at once.
+pub(crate) struct Leans {
+    on: heapless::Vec<Contact, MOST>,
+    /// True if there are more of them, or one moves.
+    are_others: bool,
+}
+
+impl Leans {
+    pub(crate) const NONE: Self = Self { on: heapless::Vec::new(), are_others: false };
+
+    /// Leans on one more.
+    pub(crate) fn add(&mut self, contact: &Contact) {
+        let is_known = self.on.iter().any(|other| is_flat(dot(other.normal, contact.normal)));
+        self.are_others |= !is_zero(contact.velocity) || !(is_known || self.on.push(*contact).is_ok());
+    }
+
+    /// The crease that an acceleration presses it into: that along which no third surface is in the way of what is left of it. The sharpest of all, if that is not known.
+    pub(crate) fn crease(&self, acceleration: Option<Vec3>) -> Option<Crease> {
+        let (on, mut corner) = (&self.on[..], None);
+        if self.are_others {
+            return None;
+        }
+        let Some(acceleration) = acceleration else { return self.sharpest() };
+        for (i, a) in on.iter().enumerate() {
+            for b in &on[..i] {
+                let Some(crease) = between(a, b, acceleration) else { continue };
+                let left = scaled(crease.along, dot(crease.along, acceleration));
+                let others = on.iter().filter(|other| ![a.normal, b.normal].contains(&other.normal));
+                if others.clone().all(|other| !leads_into(left, other)) {
+                    return Some(crease);
+                }
+                corner = Some(Crease { along: Vec3::ZERO, ..crease });
+            }
+        }
+        // It may lean on one of them alone.
+        let slides = |on_one: &Contact| {
+            let left = along(acceleration, on_one.normal, -dot(acceleration, on_one.normal));
+            leads_into(acceleration, on_one) && on.iter().all(|other| !leads_into(left, other))
+        };
+        corner.filter(|_| !on.iter().any(slides))
+    }
+
+    /// The sharpest crease, pressed into both sides alike.
+    fn sharpest(&self) -> Option<Crease> {
+        let mut sharpest: Option<Crease> = None;
+        for (i, a) in self.on.iter().enumerate() {
+            for b in &self.on[..i] {
+                let cosine = |of: &Crease| dot(of.sides[0].normal, of.sides[1].normal);
+                let Some(crease) = between(a, b, scaled(plus(a.normal, b.normal), -1.0)) else { continue };
+                if sharpest.is_none_or(|sharpest| cosine(&crease) < cosine(&sharpest)) {
+                    sharpest = Some(crease);
+                }
+            }
+        }
+        sharpest
+    }
+}
+
+/// The line between two surfaces, if both are pressed.
+fn between(a: &Contact, b: &Contact, acceleration: Vec3) -> Option<Crease> {
+    let cosine = dot(a.normal, b.normal);
+    let across = 1.0 - cosine * cosine;
+    let [on_a, on_b] = [a, b].map(|side| -dot(acceleration, side.normal));
+    let closing = [on_a - cosine * on_b, on_b - cosine * on_a];
+    let are_two = across > FLAT && cosine < OPEN;
+    (are_two && closing[0] > 0.0 && closing[1] > 0.0).then(|| Crease {
+        along: unit(a.normal.cross(b.normal)),
+        sides: [*a, *b],
+        pressing: closing.map(|closing| closing / across),
+        closing,
+    })
+}
+
+/// Tells whether two normals with this cosine are those of one surface.
+fn is_flat(cosine: f32) -> bool {
+    cosine > 0.0 && 1.0 - cosine * cosine <= FLAT
+}
+
+/// Tells whether what is left of an acceleration leads into a surface by more than rounding.
+fn leads_into(left: Vec3, side: &Contact) -> bool {
+    dot(left, side.normal) < -ROUNDING * length(left)
+}
