@@ -57,7 +57,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let now = path.instant(meeting.time);
         let came = along(before, normal, -incoming);
         let crease = self.crease(place, slack, now, pull, along(came, normal, outgoing))?;
-        let place = self.off_both(&crease, [place; 2], now).unwrap_or(place);
+        let place = self.off_both(&crease, [meeting.chord.from, place, place], now).unwrap_or(place);
         let came = within(&crease, before);
         let (friction, press) = self.friction(&crease, pushes(&crease, before));
         let slip = plus(came, friction.answer(came, press));
@@ -83,7 +83,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         }
         // Far from the origin rounding is larger: what has come from nearer to it is too close to them.
         let is_close = |side: &Contact| side.distance - self.radius < 0.5 * side.slack;
-        let raised = crease.sides.iter().any(is_close).then(|| self.off_both(&crease, [place; 2], during[0]));
+        let raised = crease.sides.iter().any(is_close).then(|| self.off_both(&crease, [place; 3], during[0]));
         let beside = raised.flatten().unwrap_or(place);
         let (slip, raised) = (within(&crease, before), minus(beside, place));
         Some(self.go_along(&crease, &Arriving { place: beside, during, before, slip, raised, acceleration }))
@@ -122,17 +122,17 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let Meeting { time, place, ref hit, .. } = *meeting;
         let (now, reach) = (path.instant(time), self.radius + LAIN * hit.slack);
         let Some(crease) = self.walls.crease(near, reach, now, None) else { return near };
-        let off = |place| self.off_both(&crease, [near, place], now);
+        let off = |place| self.off_both(&crease, [meeting.chord.from, near, place], now);
         off(place).or_else(|| off(near)).unwrap_or(near)
     }
 
-    /// The second of two places, raised off both sides of a crease, as they are at the first, by as much as what rests on one is; none, if there is no free way from the
-    /// one to the other.
-    fn off_both(&self, crease: &Crease, [from, place]: [Vec3; 2], now: Time) -> Option<Vec3> {
+    /// A place, raised off both sides of a crease, as they are at one near it, by as much as what rests on one is; none, if there is no free way to it from
+    /// where it came from.
+    fn off_both(&self, crease: &Crease, [from, near, place]: [Vec3; 3], now: Time) -> Option<Vec3> {
         let [a, b] = &crease.sides;
         let cosine = dot(a.normal, b.normal);
         let [near_a, near_b] = [a, b].map(|side| {
-            let gap = side.distance - self.radius + dot(minus(place, from), side.normal);
+            let gap = side.distance - self.radius + dot(minus(place, near), side.normal);
             max(2.0 * side.slack - gap, 0.0)
         });
         let across = 1.0 - cosine * cosine;

@@ -5,7 +5,7 @@ use super::lead::Lead;
 use super::path::Path;
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
-use super::turn::{Answer, gaining};
+use super::turn::Answer;
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
 use crate::math::{along, aside, dot, is_zero, length, max, minus, over, plus, scaled, sqrt};
@@ -84,7 +84,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
         let beside = self.set_off(path, meeting, meeting.place);
         if let Some(along) = self.along_crease(path, meeting, beside) {
-                return along;
+            return along;
         }
         let is_turned = self.is_turned(path, meeting);
         self.leave(path, meeting, beside, is_turned)
@@ -129,11 +129,10 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         // A surface that moves within itself turns what it has no hold of as if it stood still; of those that move otherwise nothing is known.
         let is_turned = is_turned && (belt.is_some() || is_zero(meeting.hit.velocity));
         let answer = Answer { raised: minus(beside, place), speeds: [incoming, outgoing], rests };
-        let pays = path.pull.is_some() || length(answer.raised) > LAIN * meeting.hit.slack;
-        let gain = answer.gain(mean, is_turned, pays);
-        if gain != 0.0 {
-            let carried = belt.filter(|_| is_turned).map_or(Vec3::ZERO, |_| aside(surface, normal));
-            slip = minus(gaining(plus(slip, carried), gain), carried);
+        let carried = belt.filter(|_| is_turned).map_or(Vec3::ZERO, |_| aside(surface, normal));
+        let kinds = [is_turned, path.pull.is_some()];
+        if let Some(paid) = answer.paid(plus(slip, carried), mean, &meeting.hit, kinds) {
+            slip = minus(paid, carried);
             after = along(plus(surface, slip), normal, outgoing);
         }
         let mut told = [before, after];

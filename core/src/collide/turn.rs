@@ -6,7 +6,7 @@
 use super::path::Path;
 use super::sweep::{LAIN, Meeting, Sweep};
 use crate::material::on_surface;
-use crate::math::{along, dot, is_zero, length, max, min, minus, scaled, sqrt};
+use crate::math::{along, aside, dot, is_zero, length, max, minus, scaled, sqrt};
 use crate::shape::{Collider, Contact, Hit};
 use crate::time::Time;
 use glam::Vec3;
@@ -30,16 +30,39 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    /// The gain in the square of the speed along the surface under such an acceleration \[m²/s²\] where the hit is one of a chain. What bounces pays by its bounce for
-    /// being raised; what slides into another surface, or is sent far back, pays for the rest, too: it would otherwise rise by as much in each step for nothing.
+    /// The velocity along the surface `hit` of what slips so, under such an acceleration \[m/s²\], if that is not all of it: where the hit is one of a chain, where it
+    /// slid into that, or is sent far back.
     #[cfg_attr(one_by_one, inline(never))]
-    pub(super) fn gain(&self, acceleration: Vec3, is_turned: bool, pays: bool) -> f32 {
-        let ([incoming, outgoing], raising) = (self.speeds, 2.0 * dot(acceleration, self.raised));
-        let unpaid = if self.rests { raising } else { min(outgoing * outgoing + raising, 0.0) };
+    pub(super) fn paid(&self, slip: Vec3, acceleration: Vec3, hit: &Hit, [is_turned, slid]: [bool; 2]) -> Option<Vec3> {
+        let gain = self.gain(acceleration, is_turned, slid);
+        let is_far = length(self.raised) > LAIN * hit.slack;
         match () {
-            () if is_turned => incoming * incoming - outgoing * outgoing + if self.rests { raising } else { 0.0 },
-            () if pays && unpaid < 0.0 => unpaid,
+            () if gain != 0.0 => Some(gaining(slip, gain)),
+            () if is_far => Some(self.sent_back(slip, aside(acceleration, hit.normal))),
+            () => None,
+        }
+    }
+
+    /// The gain in the square of the speed along the surface. What bounces pays by its bounce for being raised; what slides into another surface pays, too: it would
+    /// otherwise rise by as much in each step for nothing.
+    fn gain(&self, acceleration: Vec3, is_turned: bool, slid: bool) -> f32 {
+        let ([incoming, outgoing], raising) = (self.speeds, 2.0 * dot(acceleration, self.raised));
+        let raising = if self.rests { raising } else { 0.0 };
+        match () {
+            () if is_turned => incoming * incoming - outgoing * outgoing + raising,
+            () if slid && raising < 0.0 => raising,
             () => 0.0,
+        }
+    }
+
+    /// A velocity along the surface without what it has got along the drive since it was where it is sent back to.
+    fn sent_back(&self, slip: Vec3, drive: Vec3) -> Vec3 {
+        let pull = length(drive);
+        let (fast, gained) = (dot(slip, drive) / pull, -2.0 * dot(drive, self.raised));
+        if fast > 0.0 && gained > 0.0 {
+            along(slip, drive, (sqrt(max(fast * fast - gained, 0.0)) - fast) / pull)
+        } else {
+            slip
         }
     }
 }
@@ -131,7 +154,7 @@ fn leads_into(velocity: Vec3, normal: Vec3) -> bool {
 
 /// A velocity along a surface, of the square of whose speed so much is gained.
 #[cfg_attr(one_by_one, inline(never))]
-pub(super) fn gaining(slip: Vec3, gain: f32) -> Vec3 {
+fn gaining(slip: Vec3, gain: f32) -> Vec3 {
     let square = dot(slip, slip);
     let left = square + gain;
     if square > 0.0 { scaled(slip, if left > 0.0 { sqrt(left / square) } else { 0.0 }) } else { slip }
