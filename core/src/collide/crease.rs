@@ -4,11 +4,13 @@
 
 use super::air::Until;
 use super::path::Path;
+use super::rebound::answered;
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
+use super::turn::gaining;
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
-use crate::math::{along, dot, is_zero, length, max, minus, plus, scaled};
+use crate::math::{along, dot, is_zero, length, max, min, minus, plus, scaled};
 use crate::observe::{Impact, Sliding};
 use crate::shape::{Collider, Contact, Crease, Hit, Segment};
 use crate::time::Time;
@@ -18,7 +20,13 @@ use glam::Vec3;
 pub(super) const HOP: f32 = 16.0;
 
 /// How far rounding lets something fall in a crease \[slacks\].
-pub(super) const ROOM: f32 = 16.0;
+const ROOM: f32 = 16.0;
+
+/// The sine by which the sides of a sharp crease lean over each other at the least: from others a hit or two throw out whoever comes in.
+const OPEN: f32 = 0.05;
+
+/// The number of hits after which nothing is left of a velocity across a sharp crease.
+const MOST_HITS: u32 = 128;
 
 /// The least sine between a crease and a surface off which a place is raised along that.
 const STEEP: f32 = 0.1;
@@ -34,38 +42,78 @@ struct Arriving {
 }
 
 impl<C: Collider + ?Sized> Sweep<'_, C> {
-    /// The way on from a hit of what has slid along another surface into the one that it hits, or has hardly come off that, and leaves neither for longer than a
-    /// rest.
+    /// The way on from a hit of what has slid along another surface into the one that it hits, or has hardly come off that: along both, if it leaves neither for longer
+    /// than a rest, or off both, where a sharp crease throws it from the one to the other and back until it comes out.
     #[inline(never)]
     pub(super) fn along_crease(&mut self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<Path> {
         let Hit { normal, velocity: surface, slack, material, .. } = meeting.hit;
         let (pull, hop) = (path.drive(), dot(minus(meeting.place, path.x0), normal));
         let is_near = path.pull.is_some() || hop.abs() <= HOP * slack;
-        if !(is_near && self.heeds_creases() && is_zero(surface)) {
-            return None;
-        }
         let before = path.velocity(meeting.time);
-        let mixed = self.mixed(material);
         let incoming = dot(before, normal);
-        let outgoing = -incoming * mixed.elasticity;
-        // Most bounce: nothing more has to be known of those.
-        let pulled = length(pull);
-        let is_slow = 2.0 * outgoing < RESTING * self.dt * pulled || outgoing * outgoing <= ROOM * slack * pulled;
-        if !(incoming < 0.0 && is_slow) {
+        if !(is_near && incoming < 0.0 && self.heeds_creases() && is_zero(surface)) {
             return None;
         }
-        let now = path.instant(meeting.time);
-        let came = along(before, normal, -incoming);
-        let crease = self.crease(place, slack, now, pull, along(came, normal, outgoing))?;
-        let place = self.off_both(&crease, [meeting.chord.from, place, place], now).unwrap_or(place);
-        let came = within(&crease, before);
-        let (friction, press) = self.friction(&crease, pushes(&crease, before));
-        let slip = plus(came, friction.answer(came, press));
+        let (now, from) = (path.instant(meeting.time), meeting.chord.from);
+        let sharp = self.walls.crease(place, self.radius + LAIN * slack, now, Some(before));
+        let sharp = sharp.filter(|crease| cosine(crease) < -OPEN);
+        let mixed = self.mixed(material);
+        let after = match &sharp {
+            Some(crease) => self.after_both(crease, before),
+            None => {
+                // Most bounce: nothing more has to be known of those.
+                let (outgoing, pulled) = (-incoming * mixed.elasticity, length(pull));
+                if 2.0 * outgoing >= RESTING * self.dt * pulled && outgoing * outgoing > ROOM * slack * pulled {
+                    return None;
+                }
+                answered(before, Vec3::ZERO, normal, [incoming, outgoing], &mixed.friction)[2]
+            }
+        };
+        let held = self.crease(place, slack, now, pull, after);
+        let crease = held.or(sharp)?;
+        let place = self.off_both(&crease, [from, place, place], now).unwrap_or(place);
         let until = Until { path, place: meeting.place, now, acceleration: pull };
+        let (raised, during) = (minus(place, meeting.place), [now, path.during[1]]);
+        if held.is_none() {
+            return Some(self.fly_off(&crease, &until, raised, [before, after]));
+        }
+        let slip = if sharp.is_some() {
+            within(&crease, after)
+        } else {
+            let (friction, press) = self.friction(&crease, pushes(&crease, before));
+            let came = within(&crease, before);
+            plus(came, friction.answer(came, press))
+        };
         let acceleration = self.onward(&until, slip).mean;
-        let raised = minus(place, meeting.place);
-        let during = [now, path.during[1]];
         Some(self.go_along(&crease, &Arriving { place, during, before, slip, raised, acceleration }))
+    }
+
+    /// The velocity of what comes into a sharp crease with another after all hits of both sides, from the one to the other and back: none across the crease, if so many
+    /// do not throw it out.
+    fn after_both(&self, crease: &Crease, before: Vec3) -> Vec3 {
+        let sides = crease.sides.map(|side| (side.normal, self.mixed(side.material)));
+        let mut velocity = before;
+        for _ in 0..MOST_HITS {
+            let Some((normal, mixed)) = sides.iter().find(|(normal, _)| dot(velocity, *normal) < 0.0) else {
+                return velocity;
+            };
+            let incoming = dot(velocity, *normal);
+            let speeds = [incoming, -incoming * mixed.elasticity];
+            [.., velocity] = answered(velocity, Vec3::ZERO, *normal, speeds, &mixed.friction);
+        }
+        let (friction, press) = self.friction(crease, pushes(crease, before));
+        let came = within(crease, before);
+        plus(came, friction.answer(came, press))
+    }
+
+    /// The way out of a sharp crease, from so far off both sides: what this has raised it by it pays for.
+    fn fly_off(&mut self, crease: &Crease, until: &Until<'_>, raised: Vec3, [before, after]: [Vec3; 2]) -> Path {
+        self.report.hits += 1;
+        self.tell_sides(crease, until.now, before, after);
+        let acceleration = self.onward(until, after).mean;
+        let along_it = within(crease, after);
+        let across = gaining(minus(after, along_it), min(2.0 * dot(acceleration, raised), 0.0));
+        Path::onward(plus(until.place, raised), plus(along_it, across), acceleration, [until.now, until.path.during[1]])
     }
 
     /// The way of what lies in a crease at the start of a path, and is pressed into it: along that, from its own place.
@@ -129,8 +177,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// A place, raised off both sides of a crease, as they are at one near it, by as much as what rests on one is; none, if there is no free way to it from
     /// where it came from.
     fn off_both(&self, crease: &Crease, [from, near, place]: [Vec3; 3], now: Time) -> Option<Vec3> {
-        let [a, b] = &crease.sides;
-        let cosine = dot(a.normal, b.normal);
+        let ([a, b], cosine) = (&crease.sides, cosine(crease));
         let [near_a, near_b] = [a, b].map(|side| {
             let gap = side.distance - self.radius + dot(minus(place, near), side.normal);
             max(2.0 * side.slack - gap, 0.0)
@@ -162,13 +209,21 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let rest = (during[1] - during[0]).seconds();
         let (way, end) = Slide { velocity: slip, drive, pressing, friction }.after(rest);
         self.report.hits += 1;
-        let (id, row, mass, time) = (self.id, self.row, self.mass, during[0]);
+        self.tell_sides(crease, during[0], before, slip);
         if let Some(observer) = &mut self.observer {
-            let mut before = before;
+            let world = [acceleration, way, slip, end];
+            observer.slid(&Sliding { mass: self.mass, raised, world, along: [drive, way, slip, end] });
+        }
+        Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during, pull: Some(acceleration) }
+    }
+
+    /// Tells of the hits of both sides, if anybody wants to know.
+    fn tell_sides(&mut self, crease: &Crease, time: Time, mut before: Vec3, after: Vec3) {
+        let (id, row, mass, surface) = (self.id, self.row, self.mass, Vec3::ZERO);
+        if let Some(observer) = &mut self.observer {
             for side in &crease.sides {
                 let (normal, place) = (side.normal, side.point);
                 let closing = max(-dot(before, normal), 0.0);
-                let surface = Vec3::ZERO;
                 observer.hit(&Impact {
                     id,
                     row,
@@ -178,23 +233,20 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
                     normal,
                     closing,
                     before,
-                    after: slip,
+                    after,
                     surface,
                     time,
                 });
-                before = slip;
+                before = after;
             }
-            let world = [acceleration, way, slip, end];
-            observer.slid(&Sliding { mass, raised, world, along: [drive, way, slip, end] });
         }
-        Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during, pull: Some(acceleration) }
     }
 }
 
 /// How hard each side of a crease pushes what comes into it with such a velocity and leaves neither \[m/s\].
 fn pushes(crease: &Crease, velocity: Vec3) -> [f32; 2] {
     let [a, b] = &crease.sides;
-    let (cosine, [on_a, on_b]) = (dot(a.normal, b.normal), [a, b].map(|side| -dot(velocity, side.normal)));
+    let (cosine, [on_a, on_b]) = (cosine(crease), [a, b].map(|side| -dot(velocity, side.normal)));
     let across = 1.0 - cosine * cosine;
     [on_a - cosine * on_b, on_b - cosine * on_a].map(|push| max(push / across, 0.0))
 }
@@ -202,4 +254,10 @@ fn pushes(crease: &Crease, velocity: Vec3) -> [f32; 2] {
 /// The part of a vector that leads along a crease.
 fn within(crease: &Crease, vector: Vec3) -> Vec3 {
     scaled(crease.along, dot(crease.along, vector))
+}
+
+/// The cosine between the sides of a crease.
+fn cosine(crease: &Crease) -> f32 {
+    let [a, b] = &crease.sides;
+    dot(a.normal, b.normal)
 }

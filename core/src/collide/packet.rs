@@ -10,7 +10,7 @@ mod paths;
 mod things;
 mod walls;
 
-use super::crease::{HOP, ROOM};
+use super::crease::HOP;
 use super::sweep::{LAIN, RESTING};
 use super::turn::{LOSS, SMOOTH, STEEP};
 use crate::lanes::{Eight, LANES, Lanes, PARTS, Vectors, mask_of, max, negated, not};
@@ -266,7 +266,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
                 // What may be turned by a curve, or held by two surfaces, is followed by itself.
                 let incoming = onward.velocity(&cubics, meetings.hits.time).dot(meetings.hits.normal);
                 let alone = self.may_be_turned(&onward, incoming, &meetings.hits)
-                    | self.may_be_held((&onward, &slides), incoming, &meetings, step.seconds());
+                    | self.may_be_held(&onward, &slides, &meetings);
                 clear = clear & not(hit & alone);
                 hit = hit & clear;
             }
@@ -296,17 +296,11 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         deeper.abs().simd_le(all(2.0 * SMOOTH) * hits.slack) & is_slow
     }
 
-    /// Those that slide into another surface, or hardly leave one, and hardly bounce off it, which may be in a crease, as `along_crease` has it.
+    /// Those that slide into another surface, or have hardly left one, which may be in a crease, as `along_crease` has it.
     #[inline(always)]
-    fn may_be_held(&self, (paths, slides): (&Paths<F>, &Slides<F>), incoming: F, meetings: &Meetings<F>, dt: f32) -> F {
-        let all = |x| incoming.all(x);
-        let outgoing = negated(incoming) * max(self.elasticity, all(0.0));
+    fn may_be_held(&self, paths: &Paths<F>, slides: &Slides<F>, meetings: &Meetings<F>) -> F {
         let hop = (meetings.place - paths.x0).dot(meetings.hits.normal);
-        let are_near = slides.are | hop.abs().simd_le(all(HOP) * meetings.hits.slack);
-        let (pulled, slack) = (slides.drive(paths).length(), meetings.hits.slack);
-        let are_fast = (all(2.0) * outgoing).simd_gt(all(RESTING * dt) * pulled)
-            & (outgoing * outgoing).simd_gt(all(ROOM) * slack * pulled);
-        are_near & not(are_fast)
+        slides.are | hop.abs().simd_le(hop.all(HOP) * meetings.hits.slack)
     }
 
     /// The ways on from hits in steps of `dt` \[s\], of which so many ticks are left, those of them that slide, and whose are free.

@@ -322,7 +322,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 /// The velocity that something has along a surface, as seen from there, before friction and after it, and in the world after all, where it comes in
 /// and goes out so fast.
 #[cfg_attr(one_by_one, inline(never))]
-fn answered(
+pub(super) fn answered(
     before: Vec3,
     surface: Vec3,
     normal: Vec3,

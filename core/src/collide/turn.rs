@@ -154,7 +154,7 @@ fn leads_into(velocity: Vec3, normal: Vec3) -> bool {
 
 /// A velocity along a surface, of the square of whose speed so much is gained.
 #[cfg_attr(one_by_one, inline(never))]
-fn gaining(slip: Vec3, gain: f32) -> Vec3 {
+pub(super) fn gaining(slip: Vec3, gain: f32) -> Vec3 {
     let square = dot(slip, slip);
     let left = square + gain;
     if square > 0.0 { scaled(slip, if left > 0.0 { sqrt(left / square) } else { 0.0 }) } else { slip }
