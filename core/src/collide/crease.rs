@@ -4,7 +4,7 @@
 
 use super::air::Until;
 use super::path::Path;
-use super::rebound::answered;
+use super::rebound::{answered, free_of};
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
 use super::turn::gaining;
@@ -24,6 +24,9 @@ const ROOM: f32 = 16.0;
 
 /// The sine by which the sides of a sharp crease lean over each other at the least: from others a hit or two throw out whoever comes in.
 const OPEN: f32 = 0.05;
+
+/// The least cosine between the normals of one surface in two places that are within rounding.
+const SAME: f32 = 0.999;
 
 /// The number of hits after which nothing is left of a velocity across a sharp crease.
 const MOST_HITS: u32 = 128;
@@ -77,7 +80,9 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         if held.is_none() {
             return Some(self.fly_off(&crease, &until, raised, [before, after]));
         }
-        let slip = if sharp.is_some() {
+        // What comes to a third surface has been answered by that alone.
+        let is_side = crease.sides.iter().any(|side| dot(side.normal, normal) > SAME);
+        let slip = if sharp.is_some() || !is_side {
             within(&crease, after)
         } else {
             let (friction, press) = self.friction(&crease, pushes(&crease, before));
@@ -86,6 +91,24 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         };
         let acceleration = self.onward(&until, slip).mean;
         Some(self.go_along(&crease, &Arriving { place, during, before, slip, raised, acceleration }))
+    }
+
+    /// What a path meets in a crease before the side that its chord meets first: a chord strays by so little that a path may meet that behind the other side.
+    #[inline(never)]
+    pub(super) fn missed(&self, path: &Path, meeting: &Meeting) -> Option<Meeting> {
+        let Meeting { time, place, begun, chord, hit, .. } = *meeting;
+        let during = [chord.during[0], path.instant(time)];
+        let way = Segment { to: free_of(&hit, place), during, ..chord };
+        let far = length(way.step());
+        self.walls.crease(place, self.radius + far, during[1], None)?;
+        let other = self.walls.first_hit(&way)?;
+        let is_before = (1.0 - other.time) * far > ROOM * hit.slack;
+        if !(is_before && is_zero(hit.velocity) && is_zero(other.velocity) && dot(other.normal, hit.normal) < 0.5) {
+            return None;
+        }
+        let mut missed = *meeting;
+        missed.put_nearer(path, &path.cubic(), other, &way, [begun, time], place);
+        Some(missed)
     }
 
     /// The velocity of what comes into a sharp crease with another after all hits of both sides, from the one to the other and back: none across the crease, if so many
@@ -178,10 +201,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// where it came from.
     fn off_both(&self, crease: &Crease, [from, near, place]: [Vec3; 3], now: Time) -> Option<Vec3> {
         let ([a, b], cosine) = (&crease.sides, cosine(crease));
-        let [near_a, near_b] = [a, b].map(|side| {
-            let gap = side.distance - self.radius + dot(minus(place, near), side.normal);
-            max(2.0 * side.slack - gap, 0.0)
-        });
+        let gap = |side: &Contact| side.distance - self.radius + dot(minus(place, near), side.normal);
+        // Who is farther behind one than by rounding was put there.
+        if [a, b].iter().any(|side| side.distance - self.radius < -(LAIN * side.slack)) {
+            return None;
+        }
+        let [near_a, near_b] = [a, b].map(|side| max(2.0 * side.slack - gap(side), 0.0));
         let across = 1.0 - cosine * cosine;
         let to = along(place, a.normal, (near_a - cosine * near_b) / across);
         let to = along(to, b.normal, (near_b - cosine * near_a) / across);

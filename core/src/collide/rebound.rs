@@ -82,7 +82,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     ///
     /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
     pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
-        let beside = self.set_off(path, meeting, meeting.place);
+        let mut beside = self.set_off(path, meeting, meeting.place);
+        let missed = if beside == free_of(&meeting.hit, meeting.place) { None } else { self.missed(path, meeting) };
+        let meeting = missed.as_ref().unwrap_or(meeting);
+        if missed.is_some() {
+            beside = self.set_off(path, meeting, meeting.place);
+        }
         if let Some(along) = self.along_crease(path, meeting, beside) {
             return along;
         }
@@ -293,7 +298,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         };
         let free = |segment: Segment| self.walls.first_hit(&segment).is_none();
         let closing = max(advance - dot(path.velocity(*s), hit.normal), f32::MIN_POSITIVE);
-        let beside = along(place, hit.normal, 2.0 * hit.slack);
+        let beside = free_of(hit, place);
         // As a fraction of the path, like all its instants.
         let mut back = 2.0 * hit.slack / (closing * path.duration());
         // At a rim or in a corner another surface may be nearer than the slack of this one.
@@ -317,6 +322,11 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let from = self.walls.carry(chord.from, self.radius, [chord.during[0], now]);
         self.off_crease(path, meeting, from)
     }
+}
+
+/// A place beside a surface that is off it by as much as what rests on it is.
+pub(super) fn free_of(hit: &Hit, place: Vec3) -> Vec3 {
+    along(place, hit.normal, 2.0 * hit.slack)
 }
 
 /// The velocity that something has along a surface, as seen from there, before friction and after it, and in the world after all, where it comes in

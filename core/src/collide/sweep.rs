@@ -35,6 +35,7 @@ pub(super) struct Arrival {
 }
 
 /// Where a path meets something.
+#[derive(Clone, Copy)]
 pub(super) struct Meeting {
     /// The fraction of the whole path before it, and the place on the path \[m\].
     pub(super) time: f32,
@@ -79,7 +80,7 @@ impl Meeting {
 
     /// Puts it to where a piece of the path that spans such a part of it meets the surface, unless that is the plane by whose crossing it is there already.
     #[cfg_attr(one_by_one, inline(never))]
-    fn put_nearer(
+    pub(super) fn put_nearer(
         &mut self,
         path: &Path,
         cubic: &Cubic,

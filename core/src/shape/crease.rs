@@ -1,7 +1,7 @@
 //! Creases, in which surfaces meet that something leans on at once.
 
 use super::Contact;
-use crate::math::{along, dot, is_zero, length, plus, scaled, unit};
+use crate::math::{along, dot, is_zero, length, minus, plus, scaled, unit};
 use glam::Vec3;
 
 /// The largest number of surfaces that something leans on in a crease.
@@ -10,9 +10,11 @@ const MOST: usize = 6;
 /// The least square of the sine between two surfaces: others are one.
 const FLAT: f32 = 1e-6;
 
-/// The largest cosine between two surfaces of a crease: of those that open farther nobody is driven from the one to the other for long, and an edge of a mesh, past
-/// which something goes, leans on nobody from as far aside.
-const OPEN: f32 = 0.05;
+/// The largest cosine between two surfaces of a crease: from one side of those that open farther to the other nobody is driven for long.
+const OPEN: f32 = 0.7;
+
+/// How far a place on one surface may seem to be off another by rounding \[slacks\].
+const LEVEL: f32 = 0.5;
 
 /// The share of an acceleration that may lead into a surface by rounding.
 const ROUNDING: f32 = 1e-4;
@@ -41,10 +43,14 @@ pub(crate) struct Leans {
 impl Leans {
     pub(crate) const NONE: Self = Self { on: heapless::Vec::new(), are_others: false };
 
-    /// Leans on one more.
+    /// Leans on one more, but not on an edge of a surface on which it leans, as those are of the triangles of a mesh.
     pub(crate) fn add(&mut self, contact: &Contact) {
-        let is_known = self.on.iter().any(|other| is_flat(dot(other.normal, contact.normal)));
-        self.are_others |= !is_zero(contact.velocity) || !(is_known || self.on.push(*contact).is_ok());
+        self.are_others |= !is_zero(contact.velocity);
+        if self.on.iter().any(|other| is_edge(contact, other)) {
+            return;
+        }
+        self.on.retain(|other| !is_edge(other, contact));
+        self.are_others |= self.on.push(*contact).is_err();
     }
 
     /// The crease that an acceleration presses it into: that along which no third surface is in the way of what is left of it. The sharpest of all, if that is not known.
@@ -104,9 +110,11 @@ fn between(a: &Contact, b: &Contact, acceleration: Vec3) -> Option<Crease> {
     })
 }
 
-/// Tells whether two normals with this cosine are those of one surface.
-fn is_flat(cosine: f32) -> bool {
-    cosine > 0.0 && 1.0 - cosine * cosine <= FLAT
+/// Tells whether one is the same surface as another, or an edge of that: what leans on it does so at a place of the other, or past its end.
+fn is_edge(one: &Contact, of: &Contact) -> bool {
+    let cosine = dot(one.normal, of.normal);
+    let off = dot(minus(one.point, of.point), of.normal);
+    cosine > 0.0 && (1.0 - cosine * cosine <= FLAT || off.abs() <= LEVEL * of.slack)
 }
 
 /// Tells whether what is left of an acceleration leads into a surface by more than rounding.
