@@ -102,8 +102,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let far = length(way.step());
         self.walls.crease(place, self.radius + far, during[1], None)?;
         let other = self.walls.first_hit(&way)?;
-        let is_before = (1.0 - other.time) * far > ROOM * hit.slack;
-        if !(is_before && is_zero(hit.velocity) && is_zero(other.velocity) && dot(other.normal, hit.normal) < 0.5) {
+        let behind = (other.time - 1.0) * dot(way.step(), other.normal);
+        if !(behind > ROOM * hit.slack
+            && is_zero(hit.velocity)
+            && is_zero(other.velocity)
+            && dot(other.normal, hit.normal) < 0.5)
+        {
             return None;
         }
         let mut missed = *meeting;
