@@ -282,13 +282,14 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
         if !(length(minus(meeting.place, place)) > 16.0 * hit.slack) {
             return;
         }
-        // Around it first; where what it grazes bends away from the plane there, part by part along the chord.
+        // Around it first; where what it grazes bends away from the plane there, part by part along the chord, whatever that meets first.
         let part = (end - begun) * (1.0 / f32::from(PARTS_OF_CHORD));
         let mut span = [max(time - 0.5 * part, begun), min(time + 0.5 * part, end)];
         for i in 0..=PARTS_OF_CHORD {
             let piece = path.piece(cubic, span, self.radius);
             match self.first_hit(&piece) {
-                Some((near, is_sink)) if is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
+                Some((near, is_sink)) if i > 0 || is_sink == meeting.is_sink && dot(near.normal, hit.normal) > 0.0 => {
+                    meeting.is_sink = is_sink;
                     return meeting.put_nearer(path, cubic, near, &piece, span, place);
                 }
                 _ => span = [begun + part * f32::from(i), begun + part * f32::from(i + 1)],

@@ -13,6 +13,9 @@ const FLAT: f32 = 1e-6;
 /// The largest cosine between two surfaces of a crease: from one side of those that open farther to the other nobody is driven for long.
 const OPEN: f32 = 0.7;
 
+/// The largest cosine between two surfaces that stand at right angles: whoever leans on an edge from the side of a surface is farther aside.
+const SQUARE: f32 = 0.05;
+
 /// How far a place on one surface may seem to be off another by rounding \[slacks\].
 const LEVEL: f32 = 0.5;
 
@@ -114,7 +117,7 @@ fn between(a: &Contact, b: &Contact, acceleration: Vec3) -> Option<Crease> {
 fn is_edge(one: &Contact, of: &Contact) -> bool {
     let cosine = dot(one.normal, of.normal);
     let off = dot(minus(one.point, of.point), of.normal);
-    cosine > 0.0 && (1.0 - cosine * cosine <= FLAT || off.abs() <= LEVEL * of.slack)
+    cosine > SQUARE && (1.0 - cosine * cosine <= FLAT || off.abs() <= LEVEL * of.slack)
 }
 
 /// Tells whether what is left of an acceleration leads into a surface by more than rounding.
