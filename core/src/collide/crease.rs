@@ -128,8 +128,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let speeds = [incoming, -incoming * mixed.elasticity];
             [.., velocity] = answered(velocity, Vec3::ZERO, *normal, speeds, &mixed.friction);
         }
-        let (friction, press) = self.friction(crease, pushes(crease, before));
-        let came = within(crease, before);
+        let (friction, press) = self.friction(crease, pushes(crease, velocity));
+        let came = within(crease, velocity);
         plus(came, friction.answer(came, press))
     }
 
