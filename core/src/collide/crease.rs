@@ -7,7 +7,7 @@ use super::path::Path;
 use super::rebound::{answered, free_of};
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
-use super::turn::gaining;
+use super::turn::{gaining, sent_back};
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
 use crate::math::{along, dot, is_zero, length, max, min, minus, plus, scaled};
@@ -31,8 +31,8 @@ const SAME: f32 = 0.999;
 /// The number of hits after which nothing is left of a velocity across a sharp crease.
 const MOST_HITS: u32 = 128;
 
-/// The least sine between a crease and a surface off which a place is raised along that.
-const STEEP: f32 = 0.1;
+/// The number of times that a place is raised off both sides of a crease, and a third surface.
+const MOST_RAISES: u32 = 4;
 
 /// How something comes into a crease: from where it goes on along that and from when, with which velocity, of which so much is left, and what drives it.
 struct Arriving {
@@ -89,6 +89,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let came = within(&crease, before);
             plus(came, friction.answer(came, press))
         };
+        let drive = within(&crease, pull);
+        let slip = if length(raised) > LAIN * slack { sent_back(slip, raised, drive) } else { slip };
         let acceleration = self.onward(&until, slip).mean;
         Some(self.go_along(&crease, &Arriving { place, during, before, slip, raised, acceleration }))
     }
@@ -201,25 +203,27 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         off(place).or_else(|| off(near)).unwrap_or(near)
     }
 
-    /// A place, raised off both sides of a crease, as they are at one near it, by as much as what rests on one is; none, if there is no free way to it from
-    /// where it came from.
-    fn off_both(&self, crease: &Crease, [from, near, place]: [Vec3; 3], now: Time) -> Option<Vec3> {
+    /// A place, raised off both sides of a crease, as they are at one near it, by as much as what rests on one is, and off whatever else is then in the way; none, if
+    /// there is no free way to it from where it came from.
+    fn off_both(&self, crease: &Crease, [from, near, mut place]: [Vec3; 3], now: Time) -> Option<Vec3> {
         let ([a, b], cosine) = (&crease.sides, cosine(crease));
-        let gap = |side: &Contact| side.distance - self.radius + dot(minus(place, near), side.normal);
         // Who is farther behind one than by rounding was put there.
         if [a, b].iter().any(|side| side.distance - self.radius < -(LAIN * side.slack)) {
             return None;
         }
-        let [near_a, near_b] = [a, b].map(|side| max(2.0 * side.slack - gap(side), 0.0));
         let across = 1.0 - cosine * cosine;
-        let to = along(place, a.normal, (near_a - cosine * near_b) / across);
-        let to = along(to, b.normal, (near_b - cosine * near_a) / across);
-        let way = |to| Segment { from, to, radius: self.radius, during: [now; 2] };
-        let Some(Hit { time, normal, slack, .. }) = self.walls.first_hit(&way(to)) else { return Some(to) };
-        // Along the crease it comes off a third surface, and stays as far off both sides.
-        let (deep, rising) = (dot(minus(to, way(to).at(time)), normal), dot(crease.along, normal));
-        let to = along(to, crease.along, (2.0 * slack - deep) / rising);
-        (rising.abs() > STEEP && self.walls.first_hit(&way(to)).is_none()).then_some(to)
+        for _ in 0..MOST_RAISES {
+            let [near_a, near_b] = [a, b].map(|side| {
+                let gap = side.distance - self.radius + dot(minus(place, near), side.normal);
+                max(2.0 * side.slack - gap, 0.0)
+            });
+            let to = along(place, a.normal, (near_a - cosine * near_b) / across);
+            let to = along(to, b.normal, (near_b - cosine * near_a) / across);
+            let way = Segment { from, to, radius: self.radius, during: [now; 2] };
+            let Some(Hit { time, normal, slack, .. }) = self.walls.first_hit(&way) else { return Some(to) };
+            place = along(to, normal, 2.0 * slack - dot(minus(to, way.at(time)), normal));
+        }
+        None
     }
 
     /// The friction of both sides of a crease that press so hard, and their sum.

@@ -38,7 +38,7 @@ impl Answer {
         let is_far = length(self.raised) > LAIN * hit.slack;
         match () {
             () if gain != 0.0 => Some(gaining(slip, gain)),
-            () if is_far => Some(self.sent_back(slip, aside(acceleration, hit.normal))),
+            () if is_far => Some(sent_back(slip, self.raised, aside(acceleration, hit.normal))),
             () => None,
         }
     }
@@ -52,17 +52,6 @@ impl Answer {
             () if is_turned => incoming * incoming - outgoing * outgoing + raising,
             () if slid && raising < 0.0 => raising,
             () => 0.0,
-        }
-    }
-
-    /// A velocity along the surface without what it has got along the drive since it was where it is sent back to.
-    fn sent_back(&self, slip: Vec3, drive: Vec3) -> Vec3 {
-        let pull = length(drive);
-        let (fast, gained) = (dot(slip, drive) / pull, -2.0 * dot(drive, self.raised));
-        if fast > 0.0 && gained > 0.0 {
-            along(slip, drive, (sqrt(max(fast * fast - gained, 0.0)) - fast) / pull)
-        } else {
-            slip
         }
     }
 }
@@ -150,6 +139,18 @@ struct Arc {
 fn leads_into(velocity: Vec3, normal: Vec3) -> bool {
     let across = dot(velocity, normal);
     across < 0.0 && across * across > CURVED * dot(velocity, velocity)
+}
+
+/// A velocity along a surface without what it has got along the drive since it was where it is sent back to, by such a way.
+#[cfg_attr(one_by_one, inline(never))]
+pub(super) fn sent_back(slip: Vec3, way: Vec3, drive: Vec3) -> Vec3 {
+    let pull = length(drive);
+    let (fast, gained) = (dot(slip, drive) / pull, -2.0 * dot(drive, way));
+    if fast > 0.0 && gained > 0.0 {
+        along(slip, drive, (sqrt(max(fast * fast - gained, 0.0)) - fast) / pull)
+    } else {
+        slip
+    }
 }
 
 /// A velocity along a surface, of the square of whose speed so much is gained.
