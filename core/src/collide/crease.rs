@@ -48,7 +48,45 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// The way on from a hit of what has slid along another surface into the one that it hits, or has hardly come off that: along both, if it leaves neither for longer
     /// than a rest, or off both, where a sharp crease throws it from the one to the other and back until it comes out.
     #[inline(never)]
-    pub(super) fn along_crease(&mut self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<Path> {
+    pub(super) fn along_crease(
+        &mut self,
+        path: &Path,
+        meeting: &Meeting,
+        place: Vec3,
+        (after, is_sharp): (Vec3, bool),
+    ) -> Option<Path> {
+        let Hit { normal, slack, .. } = meeting.hit;
+        let (pull, now, before) = (path.drive(), path.instant(meeting.time), path.velocity(meeting.time));
+        let mut crease = self.crease(place, slack, now, pull, after);
+        let is_held = crease.is_some();
+        if !is_held && is_sharp {
+            crease = self.sharp(place, slack, now, before);
+        }
+        let crease = crease.as_ref()?;
+        let place = self.off_both(crease, [meeting.chord.from, place, place], now).unwrap_or(place);
+        let until = Until { path, place: meeting.place, now, acceleration: pull };
+        let (raised, during) = (minus(place, meeting.place), [now, path.during[1]]);
+        if !is_held {
+            return Some(self.fly_off(crease, &until, raised, [before, after]));
+        }
+        // What comes to a third surface has been answered by that alone.
+        let is_side = crease.sides.iter().any(|side| dot(side.normal, normal) > SAME);
+        let slip = if is_sharp || !is_side {
+            within(crease, after)
+        } else {
+            let (friction, press) = self.friction(crease, pushes(crease, before));
+            let came = within(crease, before);
+            plus(came, friction.answer(came, press))
+        };
+        let drive = within(crease, pull);
+        let slip = if length(raised) > LAIN * slack { sent_back(slip, raised, drive) } else { slip };
+        let acceleration = self.onward(&until, slip).mean;
+        Some(self.go_along(crease, &Arriving { place, during, before, slip, raised, acceleration }))
+    }
+
+    /// The velocity of what a hit may leave in a crease, after that or after all hits of a sharp one, and whether it was one.
+    #[inline(never)]
+    pub(super) fn after_hits(&self, path: &Path, meeting: &Meeting, place: Vec3) -> Option<(Vec3, bool)> {
         let Hit { normal, velocity: surface, slack, material, .. } = meeting.hit;
         let (pull, hop) = (path.drive(), dot(minus(meeting.place, path.x0), normal));
         let is_near = path.pull.is_some() || hop.abs() <= HOP * slack;
@@ -57,64 +95,46 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         if !(is_near && incoming < 0.0 && self.heeds_creases() && is_zero(surface)) {
             return None;
         }
-        let (now, from) = (path.instant(meeting.time), meeting.chord.from);
-        let sharp = self.walls.crease(place, self.radius + LAIN * slack, now, Some(before));
-        let sharp = sharp.filter(|crease| cosine(crease) < -OPEN);
-        let mixed = self.mixed(material);
-        let after = match &sharp {
-            Some(crease) => self.after_both(crease, before),
-            None => {
-                // Most bounce: nothing more has to be known of those.
-                let (outgoing, pulled) = (-incoming * mixed.elasticity, length(pull));
-                if 2.0 * outgoing >= RESTING * self.dt * pulled && outgoing * outgoing > ROOM * slack * pulled {
-                    return None;
-                }
-                answered(before, Vec3::ZERO, normal, [incoming, outgoing], &mixed.friction)[2]
-            }
-        };
-        let held = self.crease(place, slack, now, pull, after);
-        let crease = held.or(sharp)?;
-        let place = self.off_both(&crease, [from, place, place], now).unwrap_or(place);
-        let until = Until { path, place: meeting.place, now, acceleration: pull };
-        let (raised, during) = (minus(place, meeting.place), [now, path.during[1]]);
-        if held.is_none() {
-            return Some(self.fly_off(&crease, &until, raised, [before, after]));
+        if let Some(crease) = self.sharp(place, slack, path.instant(meeting.time), before) {
+            return Some((self.after_both(&crease, before), true));
         }
-        // What comes to a third surface has been answered by that alone.
-        let is_side = crease.sides.iter().any(|side| dot(side.normal, normal) > SAME);
-        let slip = if sharp.is_some() || !is_side {
-            within(&crease, after)
-        } else {
-            let (friction, press) = self.friction(&crease, pushes(&crease, before));
-            let came = within(&crease, before);
-            plus(came, friction.answer(came, press))
-        };
-        let drive = within(&crease, pull);
-        let slip = if length(raised) > LAIN * slack { sent_back(slip, raised, drive) } else { slip };
-        let acceleration = self.onward(&until, slip).mean;
-        Some(self.go_along(&crease, &Arriving { place, during, before, slip, raised, acceleration }))
+        // Most bounce: nothing more has to be known of those.
+        let mixed = self.mixed(material);
+        let (outgoing, pulled) = (-incoming * mixed.elasticity, length(pull));
+        if 2.0 * outgoing >= RESTING * self.dt * pulled && outgoing * outgoing > ROOM * slack * pulled {
+            return None;
+        }
+        let [.., after] = answered(before, Vec3::ZERO, normal, [incoming, outgoing], &mixed.friction);
+        Some((after, false))
     }
 
-    /// What a path meets in a crease before the side that its chord meets first: a chord strays by so little that a path may meet that behind the other side.
+    /// The sharp crease that a velocity leads into.
+    fn sharp(&self, place: Vec3, slack: f32, now: Time, before: Vec3) -> Option<Crease> {
+        let crease = self.walls.crease(place, self.radius + LAIN * slack, now, Some(before));
+        crease.filter(|crease| cosine(crease) < -OPEN)
+    }
+
+    /// Puts a meeting to what the path meets in a crease before the side that its chord meets first, if there is such a thing: a chord strays by so little that a path
+    /// may meet that behind the other side.
     #[inline(never)]
-    pub(super) fn missed(&self, path: &Path, meeting: &Meeting) -> Option<Meeting> {
+    pub(super) fn has_missed(&self, path: &Path, meeting: &mut Meeting) -> bool {
         let Meeting { time, place, begun, chord, hit, .. } = *meeting;
         let during = [chord.during[0], path.instant(time)];
         let way = Segment { to: free_of(&hit, place), during, ..chord };
-        let far = length(way.step());
-        self.walls.crease(place, self.radius + far, during[1], None)?;
-        let other = self.walls.first_hit(&way)?;
+        let reach = self.radius + length(way.step());
+        if self.walls.crease(place, reach, during[1], None).is_none() {
+            return false;
+        }
+        let Some(other) = self.walls.first_hit(&way) else { return false };
         let behind = (other.time - 1.0) * dot(way.step(), other.normal);
-        if !(behind > ROOM * hit.slack
+        let has_missed = behind > ROOM * hit.slack
             && is_zero(hit.velocity)
             && is_zero(other.velocity)
-            && dot(other.normal, hit.normal) < 0.5)
-        {
-            return None;
+            && dot(other.normal, hit.normal) < 0.5;
+        if has_missed {
+            meeting.put_nearer(path, &path.cubic(), other, &way, [begun, time], place);
         }
-        let mut missed = *meeting;
-        missed.put_nearer(path, &path.cubic(), other, &way, [begun, time], place);
-        Some(missed)
+        has_missed
     }
 
     /// The velocity of what comes into a sharp crease with another after all hits of both sides, from the one to the other and back: none across the crease, if so many
@@ -153,17 +173,18 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         if !self.heeds_creases() {
             return None;
         }
-        let crease = self.crease(place, slack, during[0], acceleration, before)?;
+        let crease = self.crease(place, slack, during[0], acceleration, before);
+        let crease = crease.as_ref()?;
         let lies = |side: &Contact| dot(before, side.normal).abs() * path.duration() <= LAIN * side.slack;
         if is_zero(crease.along) && !is_zero(before) || !crease.sides.iter().all(lies) {
             return None;
         }
         // Far from the origin rounding is larger: what has come from nearer to it is too close to them.
         let is_close = |side: &Contact| side.distance - self.radius < 0.5 * side.slack;
-        let raised = crease.sides.iter().any(is_close).then(|| self.off_both(&crease, [place; 3], during[0]));
+        let raised = crease.sides.iter().any(is_close).then(|| self.off_both(crease, [place; 3], during[0]));
         let beside = raised.flatten().unwrap_or(place);
-        let (slip, raised) = (within(&crease, before), minus(beside, place));
-        Some(self.go_along(&crease, &Arriving { place: beside, during, before, slip, raised, acceleration }))
+        let (slip, raised) = (within(crease, before), minus(beside, place));
+        Some(self.go_along(crease, &Arriving { place: beside, during, before, slip, raised, acceleration }))
     }
 
     /// Tells whether creases are for it. Where constraints have moved it, or springs lead a method on along a surface, it goes from hit to hit.
@@ -178,7 +199,12 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 
     /// The crease that an acceleration presses it into, if it leaves that with such a velocity for no longer than a rest.
     fn crease(&self, place: Vec3, slack: f32, now: Time, acceleration: Vec3, after: Vec3) -> Option<Crease> {
-        let crease = self.walls.crease(place, self.radius + LAIN * slack, now, Some(acceleration))?;
+        let crease = self.walls.crease(place, self.radius + LAIN * slack, now, Some(acceleration));
+        crease.filter(|crease| self.is_held(crease, slack, acceleration, after))
+    }
+
+    #[inline(never)]
+    fn is_held(&self, crease: &Crease, slack: f32, acceleration: Vec3, after: Vec3) -> bool {
         let (rest, pulled) = (RESTING * self.dt, length(acceleration));
         // What rounding has set it off by gives it as much, and would never let it rest.
         let room = ROOM * slack;
@@ -187,9 +213,8 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             let leaving = if across < 0.0 { -across * self.mixed(side.material).elasticity } else { across };
             2.0 * leaving < rest * closing || leaving * leaving <= room * closing
         };
-        let is_held =
-            !is_zero(crease.along) || 2.0 * length(after) < rest * pulled || dot(after, after) <= room * pulled;
-        (is_held && crease.sides.iter().zip(crease.closing).all(rests)).then_some(crease)
+        let stays = 2.0 * length(after) < rest * pulled || dot(after, after) <= room * pulled;
+        (!is_zero(crease.along) || stays) && crease.sides.iter().zip(crease.closing).all(rests)
     }
 
     /// A place beside a hit, off both sides of the crease, as they are at a place near it that may be between them by rounding alone; that

@@ -222,8 +222,8 @@ impl EventDriven<'_> {
 
     fn meet_wall(&mut self, row: usize, until: u32) {
         let path = self.path(row);
-        if let Some(meeting) = self.sweep(row).first_meeting(&path) {
-            self.answer_wall(row, until, &path, &meeting);
+        if let Some(mut meeting) = self.sweep(row).first_meeting(&path) {
+            self.answer_wall(row, until, &path, &mut meeting);
         } else {
             // A collider that answers otherwise the second time: it must not be asked for ever.
             let event = *self.events.event(row);
@@ -245,12 +245,12 @@ impl EventDriven<'_> {
         }
         let Some(meeting) = self.sweep(row).first_meeting(&part) else { return false };
         let until = self.units(part.instant(meeting.time));
-        self.answer_wall(row, until, &path, &meeting.within(share));
+        self.answer_wall(row, until, &path, &mut meeting.within(share));
         true
     }
 
     /// Lets a particle on its present path meet a wall.
-    fn answer_wall(&mut self, row: usize, since: u32, path: &Path, meeting: &Meeting) {
+    fn answer_wall(&mut self, row: usize, since: u32, path: &Path, meeting: &mut Meeting) {
         let event = *self.events.event(row);
         let turns = event.turns + 1;
         if meeting.is_sink {

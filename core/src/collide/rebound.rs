@@ -5,7 +5,7 @@ use super::lead::Lead;
 use super::path::Path;
 use super::slide::Slide;
 use super::sweep::{LAIN, Meeting, RESTING, Sweep};
-use super::turn::Answer;
+use super::turn::{Answer, gaining, sent_back};
 use crate::force::Friction;
 use crate::material::{Mixed, on_surface};
 use crate::math::{along, aside, dot, is_zero, length, max, minus, over, plus, scaled, sqrt};
@@ -81,18 +81,20 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     /// braked by friction, and for the time that is left the mean acceleration of the path so far, less what brakes it no more.
     ///
     /// Apart, so that what it works out is off the stack when the next hit, or a place beside this one, is sought.
-    pub(super) fn rebound(&mut self, path: &Path, meeting: &Meeting) -> Path {
+    pub(super) fn rebound(&mut self, path: &Path, meeting: &mut Meeting) -> Path {
         let mut beside = self.set_off(path, meeting, meeting.place);
-        let missed = if beside == free_of(&meeting.hit, meeting.place) { None } else { self.missed(path, meeting) };
-        let meeting = missed.as_ref().unwrap_or(meeting);
-        if missed.is_some() {
+        if beside != free_of(&meeting.hit, meeting.place) && self.has_missed(path, meeting) {
             beside = self.set_off(path, meeting, meeting.place);
         }
-        if let Some(along) = self.along_crease(path, meeting, beside) {
+        if let Some(after) = self.after_hits(path, meeting, beside)
+            && let Some(along) = self.along_crease(path, meeting, beside, after)
+        {
             return along;
         }
         let is_turned = self.is_turned(path, meeting);
-        self.leave(path, meeting, beside, is_turned)
+        let mut onward = self.leave(path, meeting, beside, is_turned);
+        pay_for(&mut onward, minus(beside, meeting.place), meeting.hit.slack);
+        onward
     }
 
     /// The same from a place beside the hit, which may be one of a chain along a surface that curves.
@@ -134,10 +136,10 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         // A surface that moves within itself turns what it has no hold of as if it stood still; of those that move otherwise nothing is known.
         let is_turned = is_turned && (belt.is_some() || is_zero(meeting.hit.velocity));
         let answer = Answer { raised: minus(beside, place), speeds: [incoming, outgoing], rests };
-        let carried = belt.filter(|_| is_turned).map_or(Vec3::ZERO, |_| aside(surface, normal));
-        let kinds = [is_turned, path.pull.is_some()];
-        if let Some(paid) = answer.paid(plus(slip, carried), mean, &meeting.hit, kinds) {
-            slip = minus(paid, carried);
+        let gain = answer.gain(mean, is_turned, path.pull.is_some());
+        if gain != 0.0 {
+            let carried = belt.filter(|_| is_turned).map_or(Vec3::ZERO, |_| aside(surface, normal));
+            slip = minus(gaining(plus(slip, carried), gain), carried);
             after = along(plus(surface, slip), normal, outgoing);
         }
         let mut told = [before, after];
@@ -322,6 +324,19 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let from = self.walls.carry(chord.from, self.radius, [chord.during[0], now]);
         self.off_crease(path, meeting, from)
     }
+}
+
+/// Lets a way on pay for such a way back, if that is far: it has not got since what it had got along the drive.
+#[inline(never)]
+fn pay_for(onward: &mut Path, back: Vec3, slack: f32) {
+    let time = onward.duration();
+    if !(length(back) > LAIN * slack && time > 0.0) {
+        return;
+    }
+    let drive = over(minus(onward.v1, onward.v0), time);
+    let change = minus(sent_back(onward.v0, back, drive), onward.v0);
+    (onward.v0, onward.v1) = (plus(onward.v0, change), plus(onward.v1, change));
+    onward.x1 = along(onward.x1, change, time);
 }
 
 /// A place beside a surface that is off it by as much as what rests on it is.

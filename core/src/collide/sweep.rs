@@ -35,7 +35,6 @@ pub(super) struct Arrival {
 }
 
 /// Where a path meets something.
-#[derive(Clone, Copy)]
 pub(super) struct Meeting {
     /// The fraction of the whole path before it, and the place on the path \[m\].
     pub(super) time: f32,
@@ -219,7 +218,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
     /// On a path, past as many hits as there may be; the slack is that of the surface along which it goes, if it goes along one.
     pub(super) fn follow(&mut self, mut path: Path, mut slack: f32) -> Arrival {
         for _ in 0..self.obstacles.max_bounces {
-            let Some(meeting) = self.first_meeting(&path) else {
+            let Some(mut meeting) = self.first_meeting(&path) else {
                 let (position, velocity) = (path.x1, self.left_or(self.turned_at_end(&path, slack)));
                 return Arrival { position, velocity, pending_death: PendingDeath::Lives };
             };
@@ -228,7 +227,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
                 return Arrival { velocity: self.left_or(end.velocity), ..end };
             }
             slack = meeting.hit.slack;
-            path = self.rebound(&path, &meeting);
+            path = self.rebound(&path, &mut meeting);
         }
         self.report.caps.bounces += 1;
         let position = self.walls.carry(path.x0, self.radius, path.during);

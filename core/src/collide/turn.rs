@@ -6,7 +6,7 @@
 use super::path::Path;
 use super::sweep::{LAIN, Meeting, Sweep};
 use crate::material::on_surface;
-use crate::math::{along, aside, dot, is_zero, length, max, minus, scaled, sqrt};
+use crate::math::{along, dot, is_zero, length, max, minus, scaled, sqrt};
 use crate::shape::{Collider, Contact, Hit};
 use crate::time::Time;
 use glam::Vec3;
@@ -30,22 +30,10 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    /// The velocity along the surface `hit` of what slips so, under such an acceleration \[m/s²\], if that is not all of it: where the hit is one of a chain, where it
-    /// slid into that, or is sent far back.
+    /// The gain in the square of the speed along the surface under such an acceleration \[m²/s²\] where the hit is one of a chain. What bounces pays by its bounce for
+    /// being raised; what slides into another surface pays, too: it would otherwise rise by as much in each step for nothing.
     #[cfg_attr(one_by_one, inline(never))]
-    pub(super) fn paid(&self, slip: Vec3, acceleration: Vec3, hit: &Hit, [is_turned, slid]: [bool; 2]) -> Option<Vec3> {
-        let gain = self.gain(acceleration, is_turned, slid);
-        let is_far = length(self.raised) > LAIN * hit.slack;
-        match () {
-            () if gain != 0.0 => Some(gaining(slip, gain)),
-            () if is_far => Some(sent_back(slip, self.raised, aside(acceleration, hit.normal))),
-            () => None,
-        }
-    }
-
-    /// The gain in the square of the speed along the surface. What bounces pays by its bounce for being raised; what slides into another surface pays, too: it would
-    /// otherwise rise by as much in each step for nothing.
-    fn gain(&self, acceleration: Vec3, is_turned: bool, slid: bool) -> f32 {
+    pub(super) fn gain(&self, acceleration: Vec3, is_turned: bool, slid: bool) -> f32 {
         let ([incoming, outgoing], raising) = (self.speeds, 2.0 * dot(acceleration, self.raised));
         let raising = if self.rests { raising } else { 0.0 };
         match () {
@@ -142,7 +130,6 @@ fn leads_into(velocity: Vec3, normal: Vec3) -> bool {
 }
 
 /// A velocity along a surface without what it has got along the drive since it was where it is sent back to, by such a way.
-#[cfg_attr(one_by_one, inline(never))]
 pub(super) fn sent_back(slip: Vec3, way: Vec3, drive: Vec3) -> Vec3 {
     let pull = length(drive);
     let (fast, gained) = (dot(slip, drive) / pull, -2.0 * dot(drive, way));

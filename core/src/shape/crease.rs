@@ -5,7 +5,7 @@ use crate::math::{along, dot, is_zero, length, minus, plus, scaled, unit};
 use glam::Vec3;
 
 /// The largest number of surfaces that something leans on in a crease.
-const MOST: usize = 6;
+const MOST: usize = 4;
 
 /// The least square of the sine between two surfaces: others are one.
 const FLAT: f32 = 1e-6;
@@ -58,20 +58,28 @@ impl Leans {
 
     /// The crease that an acceleration presses it into: that along which no third surface is in the way of what is left of it. The sharpest of all, if that is not known.
     pub(crate) fn crease(&self, acceleration: Option<Vec3>) -> Option<Crease> {
-        let (on, mut corner) = (&self.on[..], None);
-        if self.are_others {
-            return None;
+        match acceleration {
+            _ if self.are_others => None,
+            Some(acceleration) => self.pressed(acceleration),
+            None => self.sharpest(),
         }
-        let Some(acceleration) = acceleration else { return self.sharpest() };
+    }
+
+    #[inline(never)]
+    fn pressed(&self, acceleration: Vec3) -> Option<Crease> {
+        let (on, mut corner) = (&self.on[..], None);
         for (i, a) in on.iter().enumerate() {
             for b in &on[..i] {
-                let Some(crease) = between(a, b, acceleration) else { continue };
-                let left = scaled(crease.along, dot(crease.along, acceleration));
-                let others = on.iter().filter(|other| ![a.normal, b.normal].contains(&other.normal));
-                if others.clone().all(|other| !leads_into(left, other)) {
-                    return Some(crease);
+                if closing(a, b, acceleration).is_none() {
+                    continue;
                 }
-                corner = Some(Crease { along: Vec3::ZERO, ..crease });
+                let line = unit(a.normal.cross(b.normal));
+                let left = scaled(line, dot(line, acceleration));
+                let mut others = on.iter().filter(|other| ![a.normal, b.normal].contains(&other.normal));
+                if others.all(|other| !leads_into(left, other)) {
+                    return between(a, b, line, acceleration);
+                }
+                corner = Some([a, b]);
             }
         }
         // It may lean on one of them alone.
@@ -79,38 +87,43 @@ impl Leans {
             let left = along(acceleration, on_one.normal, -dot(acceleration, on_one.normal));
             leads_into(acceleration, on_one) && on.iter().all(|other| !leads_into(left, other))
         };
-        corner.filter(|_| !on.iter().any(slides))
+        corner.filter(|_| !on.iter().any(slides)).and_then(|[a, b]| between(a, b, Vec3::ZERO, acceleration))
     }
 
     /// The sharpest crease, pressed into both sides alike.
+    #[inline(never)]
     fn sharpest(&self) -> Option<Crease> {
-        let mut sharpest: Option<Crease> = None;
+        let (mut sharpest, mut least) = (None, OPEN);
         for (i, a) in self.on.iter().enumerate() {
             for b in &self.on[..i] {
-                let cosine = |of: &Crease| dot(of.sides[0].normal, of.sides[1].normal);
-                let Some(crease) = between(a, b, scaled(plus(a.normal, b.normal), -1.0)) else { continue };
-                if sharpest.is_none_or(|sharpest| cosine(&crease) < cosine(&sharpest)) {
-                    sharpest = Some(crease);
+                let cosine = dot(a.normal, b.normal);
+                if cosine < least {
+                    (sharpest, least) = (Some([a, b]), cosine);
                 }
             }
         }
-        sharpest
+        let [a, b] = sharpest?;
+        let into = scaled(plus(a.normal, b.normal), -1.0);
+        between(a, b, unit(a.normal.cross(b.normal)), into)
     }
 }
 
-/// The line between two surfaces, if both are pressed.
-fn between(a: &Contact, b: &Contact, acceleration: Vec3) -> Option<Crease> {
+/// The crease between two surfaces that leads along such a line, if both are pressed.
+fn between(a: &Contact, b: &Contact, along: Vec3, acceleration: Vec3) -> Option<Crease> {
+    let closing = closing(a, b, acceleration)?;
+    let cosine = dot(a.normal, b.normal);
+    let across = 1.0 - cosine * cosine;
+    Some(Crease { along, sides: [*a, *b], pressing: closing.map(|closing| closing / across), closing })
+}
+
+/// How hard either of two surfaces that meet would be pressed by what slides along the other \[m/s²\], if both are pressed.
+fn closing(a: &Contact, b: &Contact, acceleration: Vec3) -> Option<[f32; 2]> {
     let cosine = dot(a.normal, b.normal);
     let across = 1.0 - cosine * cosine;
     let [on_a, on_b] = [a, b].map(|side| -dot(acceleration, side.normal));
     let closing = [on_a - cosine * on_b, on_b - cosine * on_a];
     let are_two = across > FLAT && cosine < OPEN;
-    (are_two && closing[0] > 0.0 && closing[1] > 0.0).then(|| Crease {
-        along: unit(a.normal.cross(b.normal)),
-        sides: [*a, *b],
-        pressing: closing.map(|closing| closing / across),
-        closing,
-    })
+    (are_two && closing[0] > 0.0 && closing[1] > 0.0).then_some(closing)
 }
 
 /// Tells whether one is the same surface as another, or an edge of that: what leans on it does so at a place of the other, or past its end.
