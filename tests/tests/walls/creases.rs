@@ -212,7 +212,7 @@ fn grooves_may_be_anywhere() {
     }
 }
 
-/// Who falls into a groove without friction goes along that as if nothing were there, however narrow, and whatever bounces on the way.
+/// A fall into a groove without friction takes nothing of the way along that, however narrow it is, and whatever bounces on the way.
 #[test]
 fn falling_into_a_groove_takes_no_way_along_it() {
     let (mut cases, mut random) = (0, Random::new(5));
