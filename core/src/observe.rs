@@ -66,7 +66,8 @@ pub trait Observer {
         let _ = touch;
     }
 
-    /// A particle that has come to rest on a surface slides along it, or stays and is carried, for the rest of the step.
+    /// A particle that has come to rest on a surface slides along it, or stays and is carried, for the rest of the step. Should it meet something
+    /// on the way, the part that it does not go is told of as well, backwards: from the end of the slide to where that stops.
     fn slid(&mut self, slide: &Sliding) {
         let _ = slide;
     }

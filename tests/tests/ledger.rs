@@ -2,7 +2,7 @@
 
 use pointmass::force::{Coulomb, Friction, LennardJones, QuadraticDrag, Radial, State, Uniform, Viscosity, Wind};
 use pointmass::motion::Motion;
-use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
+use pointmass::shape::{Aabb, Collider, Cuboid, Cylinder, Moving, Plane};
 use pointmass::{
     Adaptive, Books, Cause, ClothSprings, ContactMaterial, Drag, Emitter, Force, Gravity, Heap, Impact, Ledger,
     LifeEvent, Measures, Meetings, Method, MutualGravity, Observer, Particle, Phase, Report, Rk4, Scene, Sheet, Size,
@@ -226,6 +226,36 @@ fn friction_has_its_line() {
                     let (books, share) = books(&scene, 1, h);
                     assert!(books.friction < -4.0 && books.scenery.abs() < 1e-4, "{method}: {books:?}");
                     assert!(share < 1e-5 && (down < 0.0) == (books.restitution < -1.0), "{method}, {share}: {books:?}");
+                }
+            }
+        }
+    }
+}
+
+/// What slides into something has slid no farther, on the floor of a room, along the crease at a wall's foot, and round that of a tank.
+#[test]
+fn slides_end_where_something_stops_them() {
+    let room = Cuboid { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) };
+    let tank = Cylinder { center: Vec3::ZERO, radius: 0.5, height: 1.0 };
+    let down = Gravity { acceleration: Vec3::new(-0.9, -9.0, -1.7) };
+    for method in [Method::Midpoint, Method::Verlet, Method::Rk4] {
+        for (walls, name) in [(&room as &dyn Collider, "room"), (&tank, "tank")] {
+            for (radius, elasticity, x) in [(0.0f32, 0.0, 0.3), (0.0, 0.7, -0.499), (0.1, 0.5, -0.399), (0.1, 0.0, 0.0)]
+            {
+                let position = Vec3::new(x, -0.4999 + radius, 0.0);
+                let (velocity, material) = (Vec3::new(1.7, 0.0, 4.3), Some(0));
+                let start = [Particle { position, velocity, radius, elasticity, material, ..Particle::REST }];
+                let scene = Scene {
+                    start: &start,
+                    forces: &down,
+                    colliders: walls,
+                    materials: &MATERIAL,
+                    integrator: &method,
+                    ..Scene::EMPTY
+                };
+                for h in [1.0 / 24.0, 1.0 / 60.0, 1.0 / 240.0] {
+                    let (books, share) = books(&scene, 1, h);
+                    assert!(share < 1e-5, "{name} {method} by {h}, {radius} m, {elasticity}: {share} {books:?}");
                 }
             }
         }

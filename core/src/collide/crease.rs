@@ -275,11 +275,13 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         Path { x0: place, v0: slip, x1: plus(place, way), v1: end, during, pull: Some(acceleration) }
     }
 
-    /// Tells of the hits of both sides, if anybody wants to know.
-    fn tell_sides(&mut self, crease: &Crease, time: Time, mut before: Vec3, after: Vec3) {
+    /// Tells of the hits of both sides, if anybody wants to know: of what the first pushes it by, and of all else with the second.
+    fn tell_sides(&mut self, crease: &Crease, time: Time, before: Vec3, after: Vec3) {
         let (id, row, mass, surface) = (self.id, self.row, self.mass, Vec3::ZERO);
         if let Some(observer) = &mut self.observer {
-            for side in &crease.sides {
+            let [push, _] = pushes(crease, minus(before, after));
+            let pushed = along(before, crease.sides[0].normal, push);
+            for (side, [before, after]) in crease.sides.iter().zip([[before, pushed], [pushed, after]]) {
                 let (normal, place) = (side.normal, side.point);
                 let closing = max(-dot(before, normal), 0.0);
                 observer.hit(&Impact {
@@ -295,7 +297,6 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
                     surface,
                     time,
                 });
-                before = after;
             }
         }
     }

@@ -9,7 +9,7 @@ use super::sweep::{Meeting, Sweep};
 use super::tile::Obstacles;
 use crate::force::Attributes;
 use crate::index::{Room, SpatialIndex, between as shortest};
-use crate::material::of_two;
+use crate::material::{Mixed, of_two};
 use crate::math::{high, largest, length, max};
 use crate::observe::{Impact, Observer};
 use crate::particles::Id;
@@ -38,6 +38,8 @@ pub(super) struct EventDriven<'a> {
     /// Positions and velocities at the present paths' beginnings and ends.
     pub(super) starts: [&'a mut [Vec3]; 2],
     pub(super) ends: [&'a mut [Vec3]; 2],
+    /// What drives those that go along a surface, which bears some of it \[m/s²\]; not a number: it goes along none.
+    pub(super) pull: &'a mut [Vec3],
     /// Positions at the step's beginning, which the index sorts.
     pub(super) home: &'a [Vec3],
     /// The room through whose sides they meet, if there is one.
@@ -99,7 +101,7 @@ impl EventDriven<'_> {
         while let Some(row) = self.events.first() {
             let event = *self.events.event(row);
             if event.partner == WALL {
-                self.meet_wall(row, event.until);
+                self.meet_wall(row);
                 near = near.filter(|_| !self.strays(row));
                 self.foresee(row, near);
                 continue;
@@ -114,7 +116,18 @@ impl EventDriven<'_> {
             self.foresee(row, near);
             self.foresee(other, near);
         }
+        (0..self.home.len()).for_each(|row| self.turn_at_end(row));
         self.report.effort.all_pairs += u64::from(near.is_none());
+    }
+
+    /// Turns the velocity of what has gone along a surface which curves to where that leads on.
+    fn turn_at_end(&mut self, row: usize) {
+        let event = *self.events.event(row);
+        if event.partner == GONE || event.waits != 0 || self.pull[row].is_nan() {
+            return;
+        }
+        let (path, slack) = (self.path(row), self.slack(row, row));
+        self.ends[1][row] = self.sweep(row).turned_at_end(&path, slack);
     }
 
     /// Tells whether a particle's present path leads where the index is not asked to look for it.
@@ -220,10 +233,10 @@ impl EventDriven<'_> {
         4.0 * f32::EPSILON * (size + self.radius[row] + self.radius[other])
     }
 
-    fn meet_wall(&mut self, row: usize, until: u32) {
+    fn meet_wall(&mut self, row: usize) {
         let path = self.path(row);
         if let Some(mut meeting) = self.sweep(row).first_meeting(&path) {
-            self.answer_wall(row, until, &path, &mut meeting);
+            self.answer_wall(row, &path, &mut meeting);
         } else {
             // A collider that answers otherwise the second time: it must not be asked for ever.
             let event = *self.events.event(row);
@@ -244,13 +257,12 @@ impl EventDriven<'_> {
             return false;
         }
         let Some(meeting) = self.sweep(row).first_meeting(&part) else { return false };
-        let until = self.units(part.instant(meeting.time));
-        self.answer_wall(row, until, &path, &mut meeting.within(share));
+        self.answer_wall(row, &path, &mut meeting.within(share));
         true
     }
 
     /// Lets a particle on its present path meet a wall.
-    fn answer_wall(&mut self, row: usize, since: u32, path: &Path, meeting: &mut Meeting) {
+    fn answer_wall(&mut self, row: usize, path: &Path, meeting: &mut Meeting) {
         let event = *self.events.event(row);
         let turns = event.turns + 1;
         if meeting.is_sink {
@@ -261,6 +273,8 @@ impl EventDriven<'_> {
             return;
         }
         let onward = self.sweep(row).rebound(path, meeting);
+        // Which may be earlier than it was foreseen: the chord had met something else first.
+        let since = self.units(onward.during[0]);
         self.events.set(row, NextEvent { turns, since, partner: NOBODY, ..event });
         self.go(row, &onward);
     }
@@ -291,16 +305,14 @@ impl EventDriven<'_> {
         let offset = paths[0].x0 - paths[1].x0 - image;
         let normal = Touch::along(offset, velocity);
         let inverse_mass = rows.map(|row| self.inverse_mass[row]);
-        let acceleration = paths.map(|path| path.acceleration());
+        let (acceleration, free) = (paths.map(|path| path.acceleration()), paths.map(|path| path.drive()));
         let ways = paths; // Before they are set apart, which is no motion.
         let overlap = self.radius[row] + self.radius[other] - length(offset);
         if overlap > self.slack(row, other) {
             self.set_apart(rows, waits, &mut paths, normal * overlap);
         }
-        let material = rows.map(|row| self.material[row].checked_sub(1));
-        let mixed = of_two(self.obstacles.materials, rows.map(|row| self.elasticity[row]), material);
-        let slack = self.slack(row, other);
-        let touch = Touch { normal, velocity, acceleration, inverse_mass, mixed, slack };
+        let (mixed, slack) = (self.mixed(rows), self.slack(row, other));
+        let touch = Touch { normal, velocity, acceleration, free, inverse_mass, mixed, slack };
         let Answer { velocity: after, way, ends, slid } = self.answer(rows, waits, &ways, &touch, now);
         if let Some(slid) = &slid {
             self.observer.slid(slid);
@@ -334,14 +346,22 @@ impl EventDriven<'_> {
                 continue;
             }
             self.events.set(row, NextEvent { turns, since: until, ..event });
-            let Path { x0, during, .. } = paths[i];
-            let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during, pull: None };
+            let Path { x0, during, pull, .. } = paths[i];
+            // Two that stay in touch go on along what bears them; whoever is knocked away may have left it.
+            let pull = pull.filter(|_| slid.is_some());
+            let onward = Path { x0, v0: after[i], x1: x0 + way[i], v1: ends[i], during, pull };
             self.go(row, &onward);
             // Where one waits and does not get away, the other cannot go on either.
             if waits[1 - i] && after[i].dot(normal) < 0.0 {
                 self.wait(row);
             }
         }
+    }
+
+    /// The elasticity and friction between two.
+    fn mixed(&self, rows: [usize; 2]) -> Mixed {
+        let material = rows.map(|row| self.material[row].checked_sub(1));
+        of_two(self.obstacles.materials, rows.map(|row| self.elasticity[row]), material)
     }
 
     /// The motions that a touch leaves two, from when they touch to the step's end, in which those are braked as fast as they are then that do not wait.
@@ -356,12 +376,13 @@ impl EventDriven<'_> {
                 if waits[i] {
                     return touch.acceleration[i];
                 }
-                let (path, acceleration) = (&paths[i], touch.acceleration[i]);
+                let (path, acceleration) = (&paths[i], if stays { touch.acceleration[i] } else { touch.free[i] });
                 let until = Until { path, place: path.x0, now, acceleration };
                 let onward = air.braking(self.attributes, rows[i]).onward(&until, answer.velocity[i]);
                 if stays { onward.held(touch.normal) } else { onward.mean }
             });
-            answer = Touch { acceleration, ..*touch }.answer(dt, rest);
+            let all = if stays { [acceleration, touch.free] } else { [touch.acceleration, acceleration] };
+            answer = Touch { acceleration: all[0], free: all[1], ..*touch }.answer(dt, rest);
             if answer.slid.is_some() == stays {
                 break;
             }
@@ -409,6 +430,7 @@ impl EventDriven<'_> {
     fn go(&mut self, row: usize, path: &Path) {
         (self.starts[0][row], self.starts[1][row]) = (path.x0, path.v0);
         (self.ends[0][row], self.ends[1][row]) = (path.x1, path.v1);
+        self.pull[row] = path.pull.unwrap_or(Vec3::NAN);
     }
 
     /// The present path.
@@ -419,7 +441,8 @@ impl EventDriven<'_> {
         if event.waits != 0 || self.inverse_mass[row] == 0.0 {
             return Path { x0, v0: Vec3::ZERO, x1: x0, v1: Vec3::ZERO, during, pull: None };
         }
-        Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during, pull: None }
+        let pull = Some(self.pull[row]).filter(|pull| !pull.is_nan());
+        Path { x0, v0, x1: self.ends[0][row], v1: self.ends[1][row], during, pull }
     }
 
     fn id(&self, row: usize) -> Id {

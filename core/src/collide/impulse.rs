@@ -7,9 +7,10 @@ use super::swept::Swept;
 use super::tile::Tile;
 use crate::force::Attributes;
 use crate::memory::Shares;
+use glam::Vec3;
 
-/// Vectors a particle for its next event and for where it was at the step's beginning.
-pub(super) const COLUMNS: usize = 4;
+/// Vectors a particle for its next event, for where it was at the step's beginning, and for what drives it along a surface.
+pub(super) const COLUMNS: usize = 5;
 
 /// Follows all through the step.
 #[inline(never)]
@@ -23,7 +24,8 @@ pub(super) fn follow(swept: Swept<'_, '_>) {
     let (len, room) = (tile.position.len(), index.room());
     let Attributes { lives, inverse_mass, elasticity, .. } = tile.attributes;
     let Shares { start: [start_x, start_v], scratch, .. } = tile.layout.shares(tile.work);
-    let (events, home, index_memory) = scratch.meeting(len);
+    let (events, [home, pull], index_memory) = scratch.meeting(len);
+    pull.fill(Vec3::NAN);
     let unit = (tile.dt.ticks() >> 31).checked_ilog2().map_or(0, |bits| bits + 1);
     let mut all = EventDriven {
         obstacles: tile.obstacles,
@@ -35,6 +37,7 @@ pub(super) fn follow(swept: Swept<'_, '_>) {
         events: Queue::new(bytemuck::cast_slice_mut(events)),
         ends: [&mut *tile.position, &mut *tile.velocity],
         starts: [&mut start_x[..len], &mut start_v[..len]],
+        pull,
         home: &[],
         room,
         pending_death: &mut *tile.pending_death,

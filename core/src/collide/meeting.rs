@@ -94,6 +94,8 @@ pub(super) struct Touch {
     pub(super) normal: Vec3,
     pub(super) velocity: [Vec3; 2],
     pub(super) acceleration: [Vec3; 2],
+    /// The same for those who do not stay in touch: what bears one as it slides may be left by then.
+    pub(super) free: [Vec3; 2],
     /// Zero for what is fixed; not both.
     pub(super) inverse_mass: [f32; 2],
     pub(super) mixed: Mixed,
@@ -131,12 +133,9 @@ impl Touch {
         let [da, db] = share(change);
         let velocity = [a + da, b + db];
         if !rests {
-            let end = |i: usize| {
-                let (v, a) = (velocity[i], self.acceleration[i]);
-                (v + a * (0.5 * rest)) * rest
-            };
-            let ends = [0, 1].map(|i| velocity[i] + self.acceleration[i] * rest);
-            return Answer { velocity, way: [end(0), end(1)], ends, slid: None };
+            let way = [0, 1].map(|i| (velocity[i] + self.free[i] * (0.5 * rest)) * rest);
+            let ends = [0, 1].map(|i| velocity[i] + self.free[i] * rest);
+            return Answer { velocity, way, ends, slid: None };
         }
         let slip = came + braked;
         let drive = acceleration + n * pressing;
@@ -180,7 +179,8 @@ mod tests {
     fn head_on(elasticity: f32, inverse_mass: [f32; 2]) -> Touch {
         let mixed = Mixed { elasticity, friction: Friction::NONE };
         let velocity = [Vec3::new(-3.0, 1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)];
-        Touch { normal: Vec3::X, velocity, acceleration: [Vec3::ZERO; 2], inverse_mass, mixed, slack: 1e-6 }
+        let still = [Vec3::ZERO; 2];
+        Touch { normal: Vec3::X, velocity, acceleration: still, free: still, inverse_mass, mixed, slack: 1e-6 }
     }
 
     #[test]

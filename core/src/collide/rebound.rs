@@ -93,7 +93,10 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         }
         let is_turned = self.is_turned(path, meeting);
         let mut onward = self.leave(path, meeting, beside, is_turned);
-        pay_for(&mut onward, minus(beside, meeting.place), meeting.hit.slack);
+        // What moves may have carried it there, and so may constraints.
+        if is_zero(meeting.hit.velocity) && self.left.is_none() {
+            pay_for(&mut onward, minus(beside, meeting.place), meeting.hit.slack);
+        }
         onward
     }
 
@@ -168,6 +171,21 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         if let Some(observer) = &mut self.observer {
             let closing = max(-dot(minus(before, surface), normal), 0.0);
             observer.hit(&Impact { id, row, other: None, mass, place, normal, closing, before, after, surface, time });
+        }
+    }
+
+    /// Tells that of a slide which has been told of as a whole the part after a fraction of its path is not gone, if anybody wants to know.
+    #[inline(never)]
+    pub(super) fn tell_cut(&mut self, path: &Path, time: f32, slack: f32) {
+        let (true, Some(pull)) = (self.observer.is_some(), path.pull) else { return };
+        let (_, seat) = self.faces(path.x0, slack, path.during[0]);
+        let surface = seat.map_or(Vec3::ZERO, |seat| seat.velocity);
+        let back = [pull, minus(path.at(time), path.x1), path.v1, path.velocity(time)];
+        let [_, way, first, last] = back;
+        let way = along(way, surface, path.duration() * (1.0 - time));
+        let seen = [pull, way, minus(first, surface), minus(last, surface)];
+        if let Some(observer) = &mut self.observer {
+            observer.slid(&Sliding { mass: self.mass, raised: Vec3::ZERO, world: back, along: seen });
         }
     }
 

@@ -222,6 +222,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
                 let (position, velocity) = (path.x1, self.left_or(self.turned_at_end(&path, slack)));
                 return Arrival { position, velocity, pending_death: PendingDeath::Lives };
             };
+            self.tell_cut(&path, meeting.time, meeting.hit.slack);
             if meeting.is_sink {
                 let end = meeting.arrival(&path);
                 return Arrival { velocity: self.left_or(end.velocity), ..end };
@@ -230,6 +231,7 @@ impl<'a, C: Collider + ?Sized> Sweep<'a, C> {
             path = self.rebound(&path, &mut meeting);
         }
         self.report.caps.bounces += 1;
+        self.tell_cut(&path, 0.0, slack);
         let position = self.walls.carry(path.x0, self.radius, path.during);
         Arrival { position, velocity: self.left_or(path.v0), pending_death: PendingDeath::Lives }
     }

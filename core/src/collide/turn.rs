@@ -104,7 +104,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
     }
 
     /// The number of surfaces that something at a place lies on, and one of them.
-    fn faces(&self, place: Vec3, slack: f32, instant: Time) -> (u32, Option<Contact>) {
+    pub(super) fn faces(&self, place: Vec3, slack: f32, instant: Time) -> (u32, Option<Contact>) {
         let (mut faces, mut seat) = (0, None);
         self.walls.contacts(place, self.radius + LAIN * slack, instant, &mut |contact| {
             faces += 1;

@@ -384,13 +384,13 @@ impl Scratch<'_> {
 }
 
 impl<'m> Scratch<'m> {
-    /// For meetings of so many, when all have been moved: for their events, for where they were at the sub-step's beginning, and for an
-    /// index of that.
-    pub(crate) fn meeting(self, len: usize) -> (&'m mut [u32], &'m mut [Vec3], &'m mut [u32]) {
+    /// For meetings of so many, when all have been moved: for their events, for where they were at the sub-step's beginning and for what drives them
+    /// along surfaces, and for an index of where they were.
+    pub(crate) fn meeting(self, len: usize) -> (&'m mut [u32], [&'m mut [Vec3]; 2], &'m mut [u32]) {
         let mut rest = self.vectors;
-        let (events, home) = (take(&mut rest, 3 * len), take(&mut rest, len));
+        let (events, columns) = (take(&mut rest, 3 * len), [(); 2].map(|()| take(&mut rest, len)));
         let index = take(&mut rest, self.layout.plan.index * len);
-        (bytemuck::cast_slice_mut(events), home, bytemuck::cast_slice_mut(index))
+        (bytemuck::cast_slice_mut(events), columns, bytemuck::cast_slice_mut(index))
     }
 }
 

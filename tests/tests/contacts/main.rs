@@ -1,6 +1,7 @@
 //! Particles that have a radius meet each other: by impulse, by force, by position.
 
 mod bounds;
+mod bowls;
 mod drums;
 mod elastic;
 mod events;

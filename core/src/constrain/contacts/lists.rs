@@ -8,6 +8,7 @@ use crate::material::{of_two, on_surface};
 use crate::math::{length, max, min};
 use crate::memory::{take, take_vectors};
 use crate::shape::{Collider, Contact, Segment};
+use crate::time::Time;
 use glam::Vec3;
 
 /// Pairs of near particles that there is room for, for each particle.
@@ -43,7 +44,10 @@ pub(super) struct Face {
     /// How it moves the particle then \[m/s\].
     pub(super) velocity: Vec3,
     pub(super) touch: Touch,
-    pub(super) spare: u32,
+    /// The speed at which the two are to part after it \[m/s\].
+    pub(super) bounce: f32,
+    /// 1 if the surface has been found to be flat there.
+    pub(super) is_flat: u32,
 }
 
 /// How long the lists are, and what else is to be known of the sub-step.
@@ -193,8 +197,30 @@ fn gather_faces(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, seconds: f32) {
             lists.rough |= u32::from(touch.has_friction());
             let (way, velocity) = carried(colliders, center, contact, substep);
             let (row, offset) = (row as u32, normal.dot(point + way));
-            *place = Face { row, normal, offset, velocity, touch, spare: 0 };
+            *place = Face { row, normal, offset, velocity, touch, bounce: 0.0, is_flat: 0 };
         });
+    }
+}
+
+impl Face {
+    /// Turns the face of scenery that stands still to where that curves to beside its particle now. From there on the particle goes along it: along a
+    /// plane that touches it elsewhere it would gain by being raised.
+    pub(super) fn turn(&mut self, colliders: &dyn Collider, center: Vec3, radius: f32, now: Time) {
+        if self.is_flat != 0 || !center.is_finite() {
+            return;
+        }
+        let (mut alike, mut nearest) = (-1.0, None);
+        colliders.contacts(center, (1.0 + MARGIN) * radius, now, &mut |contact: &Contact| {
+            let likeness = contact.normal.dot(self.normal);
+            if likeness > alike {
+                (alike, nearest) = (likeness, Some(*contact));
+            }
+        });
+        let Some(Contact { normal, point, .. }) = nearest else { return };
+        self.is_flat = u32::from(normal == self.normal);
+        if self.is_flat == 0 {
+            (self.normal, self.offset) = (normal, normal.dot(point));
+        }
     }
 }
 

@@ -56,7 +56,15 @@ fn driven(bodies: &Bodies<'_>) -> Vec3 {
 /// Answers the approach of what touches by the elasticity and the slip by friction.
 pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
     let (is_last, rough) = (bodies.substep.is_last(), kept.lists.rough != 0);
+    let (colliders, now) = (bodies.colliders, bodies.substep.during[1]);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
+    for face in faces.iter_mut().filter(|face| face.touch.is_on()) {
+        pass.bounce_off(face);
+        // Of those that move all are sought anew.
+        if !colliders.moves() {
+            face.turn(colliders, pass.position[face.row as usize], pass.radius[face.row as usize], now);
+        }
+    }
     for sweep in 0..if is_last { SETTLING } else { 1 } {
         pass.borne.fill(Vec3::ZERO);
         pass.owed.fill(Vec3::ZERO);
@@ -333,10 +341,16 @@ impl<'a> Pass<'a> {
         }
     }
 
+    /// Finds out how fast a particle and a face are to part.
+    fn bounce_off(&self, face: &mut Face) {
+        let row = face.row as usize;
+        face.bounce = self.bounce(face.touch.elasticity, &|v: &[Vec3]| (v[row] - face.velocity).dot(face.normal));
+    }
+
     fn press_face(&mut self, face: &mut Face) {
         let row = face.row as usize;
-        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(face.normal);
-        let change = face.touch.press(self.bounce(face.touch.elasticity, &along), along(self.velocity));
+        let parting = (self.velocity[row] - face.velocity).dot(face.normal);
+        let change = face.touch.press(face.bounce, parting);
         self.velocity[row] += face.normal * change;
         self.borne[row] += face.normal * face.touch.pressed();
     }
@@ -387,8 +401,7 @@ impl<'a> Pass<'a> {
         let back = hold_back(taken, aside(self.drift[row], normal), self.h);
         self.position[row] += back;
         self.drift[row] += back - taken * (0.5 * self.h);
-        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(normal);
-        if taken == -slip && self.bounce(face.touch.elasticity, &along) == 0.0 {
+        if taken == -slip && face.bounce == 0.0 {
             let way = face.velocity * self.h;
             let gap = (self.x0[row] + way).dot(normal) - face.offset - self.radius[row];
             let touched = gap.abs() <= self.slack(row, self.radius[row]);
