@@ -3,7 +3,7 @@
 use pointmass::constrain::{Shell, ShellParams};
 use pointmass::force::Friction;
 use pointmass::shape::{Collider, MeshBuf, Plane};
-use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Sheet, Time, Vec3};
+use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Sheet, Time, Vec3};
 use pointmass_tests::{Random, often, started};
 
 /// A frame of axes, turned anyhow.
@@ -76,5 +76,52 @@ fn cloth_slides_over_flat_triangles_as_over_a_plane() {
         let what = format!("{} in {substeps}, {scale} m, {cells} cells, friction {mu}, {velocity}", method.name());
         assert!(place.distance(there) < 1e-3, "{what}: {place}, not {there}");
         assert!(speed.distance(fast) < 5e-3, "{what}: {speed}, not {fast} m/s");
+    }
+}
+
+/// A ball that contacts keep by position is braked by no edge that is level with the faces beside it.
+#[test]
+fn balls_slide_over_flat_triangles_as_over_a_plane() {
+    let mut random = Random::new(32);
+    for round in 0..often(120).max(24) {
+        let scale = [1.0, 0.1, 20.0][round % 3];
+        let turn @ [x, y, z] = axes(&mut random);
+        let cells = [7, 20, 60][round / 3 % 3];
+        let triangles = floor(&mut random, turn, 4.0 * scale, cells);
+        let plane = Plane { point: Vec3::ZERO, normal: y };
+        let radius = [0.12, 0.3][round / 9 % 2] * scale;
+        let aside = x * random.between(-1.0, 1.0) + z * random.between(-1.0, 1.0);
+        let velocity = aside * (random.between(0.3, 2.0) * scale.sqrt());
+        let position = y * radius;
+        let start = [Particle { position, velocity, radius, elasticity: 0.0, material: Some(0), ..Particle::REST }];
+        let mu = [0.0, 0.1][round % 2];
+        let materials = [ContactMaterial { elasticity: None, friction: Some(Friction { static_: mu, kinetic: mu }) }];
+        let forces = Gravity { acceleration: y * -9.81 };
+        let integrator = Method::ALL[round % Method::ALL.len()];
+        let substeps = [1, 4, 12, 50][round % 4];
+        let end = |colliders: &dyn Collider| {
+            let scene = Scene {
+                start: &start,
+                colliders,
+                forces: &forces,
+                materials: &materials,
+                constraints: &Contacts::HARD,
+                substeps,
+                integrator: &integrator,
+                ..Scene::EMPTY
+            };
+            let mut system = started(&scene, 1, 1);
+            for i in 1..=60 {
+                system.step(&scene, Time::from_seconds(i as f32 * scale.sqrt() / 60.0) - system.time());
+            }
+            let all = system.particles();
+            ([all.position[0], all.velocity[0]], system.totals().caps.contacts)
+        };
+        let ([on, fast], full) = end(&triangles);
+        let ([wanted, speed], _) = end(&plane);
+        let case = format!("{round}: {integrator} in {substeps}, {scale} m, {cells} cells, {radius} m");
+        let (off, slower) = ((on - wanted).length(), (fast - speed).length());
+        assert!(off < 5e-3 * scale && slower < 5e-3 * scale.sqrt(), "{case}: {off} m, {slower} m/s off");
+        assert_eq!(full, 0, "{case}");
     }
 }

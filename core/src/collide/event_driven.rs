@@ -5,7 +5,7 @@ use super::images::first_touch_of_images;
 use super::meeting::{Answer, Touch};
 use super::path::{Path, between};
 use super::queue::{GONE, NEVER, NOBODY, NextEvent, Queue, WALL};
-use super::sweep::{Meeting, Sweep};
+use super::sweep::{LAIN, Meeting, Sweep};
 use super::tile::Obstacles;
 use crate::force::Attributes;
 use crate::index::{Room, SpatialIndex, between as shortest};
@@ -79,6 +79,8 @@ impl EventDriven<'_> {
             if is_newborn && born > now {
                 let path = self.sweep(row).let_go(&path);
                 self.go(row, &path);
+            } else if let Some(along) = if is_newborn { None } else { self.lying(row, &path) } {
+                self.go(row, &along);
             } else if path.lags() {
                 let path = self.sweep(row).pressed_on(&path);
                 self.go(row, &path);
@@ -120,14 +122,25 @@ impl EventDriven<'_> {
         self.report.effort.all_pairs += u64::from(near.is_none());
     }
 
+    /// The way of what lies on scenery, along that.
+    fn lying(&mut self, row: usize, path: &Path) -> Option<Path> {
+        let hull = path.hull(self.radius[row]);
+        let Obstacles { colliders, sinks, .. } = self.obstacles;
+        let may_lie = self.inverse_mass[row] != 0.0 && colliders.may_touch(&hull) && !sinks.may_touch(&hull);
+        may_lie.then(|| self.sweep(row).lying(path)).flatten().map(|(along, _)| along)
+    }
+
     /// Turns the velocity of what has gone along a surface which curves to where that leads on.
     fn turn_at_end(&mut self, row: usize) {
         let event = *self.events.event(row);
         if event.partner == GONE || event.waits != 0 || self.pull[row].is_nan() {
             return;
         }
-        let (path, slack) = (self.path(row), self.slack(row, row));
-        self.ends[1][row] = self.sweep(row).turned_at_end(&path, slack);
+        let (path, reach) = (self.path(row), LAIN * self.slack(row, row));
+        let sweep = self.sweep(row);
+        if let (_, Some(seat)) = sweep.faces(path.x1, reach, path.during[1]) {
+            self.ends[1][row] = sweep.turned_at_end(&path, seat.slack);
+        }
     }
 
     /// Tells whether a particle's present path leads where the index is not asked to look for it.

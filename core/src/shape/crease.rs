@@ -129,8 +129,13 @@ fn closing(a: &Contact, b: &Contact, acceleration: Vec3) -> Option<[f32; 2]> {
 /// Tells whether one is the same surface as another, or an edge of that: what leans on it does so at a place of the other, or past its end.
 fn is_edge(one: &Contact, of: &Contact) -> bool {
     let cosine = dot(one.normal, of.normal);
+    cosine > SQUARE && 1.0 - cosine * cosine <= FLAT || is_level(one, of, LEVEL)
+}
+
+/// Tells whether what leans on one does so at a place that is level with the other to so many slacks: on that it then leans as well.
+pub(crate) fn is_level(one: &Contact, of: &Contact, slacks: f32) -> bool {
     let off = dot(minus(one.point, of.point), of.normal);
-    cosine > SQUARE && (1.0 - cosine * cosine <= FLAT || off.abs() <= LEVEL * of.slack)
+    dot(one.normal, of.normal) > SQUARE && off.abs() <= slacks * of.slack
 }
 
 /// Tells whether what is left of an acceleration leads into a surface by more than rounding.

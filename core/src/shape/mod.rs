@@ -49,6 +49,7 @@ pub(crate) use clearance::NEAREST;
 pub use collider::{Collider, Few, Many, Mapped};
 pub use cone::Cone;
 pub use crease::Crease;
+pub(crate) use crease::is_level;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;

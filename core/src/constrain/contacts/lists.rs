@@ -7,7 +7,7 @@ use crate::index::between;
 use crate::material::{of_two, on_surface};
 use crate::math::{length, max, min};
 use crate::memory::{take, take_vectors};
-use crate::shape::{Collider, Contact, Segment};
+use crate::shape::{Collider, Contact, Segment, is_level};
 use crate::time::Time;
 use glam::Vec3;
 
@@ -17,6 +17,12 @@ const PAIRS: usize = 8;
 const FACES: usize = 3;
 /// How much farther apart than a touch two may be and still be listed, as a share of the smaller radius.
 const MARGIN: f32 = 0.1;
+/// How far off the plane of a face an edge may seem to be that is one of that \[slacks\].
+const LEVEL: f32 = 4.0;
+/// The cosine of the angle between the normals of a face and of what it may turn to.
+const ALIKE: f32 = 0.5;
+/// Contacts with the scenery around a particle.
+type Around = heapless::Vec<Contact, 16>;
 /// The words kept through the step: for each particle a velocity, a drift, two loads, pairs and faces, and how long the
 /// lists are.
 pub(super) const KEPT: Words =
@@ -186,10 +192,19 @@ fn gather_faces(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, seconds: f32) {
         let reach = radius + min(length(bodies.velocity[row]) * seconds, 0.5 * radius) + MARGIN * radius;
         let own = bodies.material[row].checked_sub(1);
         let elasticity = bodies.elasticity[row];
+        let mut around = Around::new();
         colliders.contacts(center, reach, substep.during[0], &mut |contact: &Contact| {
+            // An edge of a mesh that is level with a face bears nobody whom that does not: its plane leans in the way.
+            if around.iter().any(|other| is_level(contact, other, LEVEL) && other.distance <= contact.distance) {
+                return;
+            }
+            around.retain(|other| !(is_level(other, contact, LEVEL) && contact.distance <= other.distance));
+            bodies.report.caps.contacts += u64::from(around.push(*contact).is_err());
+        });
+        for contact in &around {
             let Some(place) = kept.faces.get_mut(lists.faces as usize) else {
                 bodies.report.caps.contacts += 1;
-                return;
+                break;
             };
             lists.faces += 1;
             let Contact { point, normal, material, .. } = *contact;
@@ -198,25 +213,24 @@ fn gather_faces(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, seconds: f32) {
             let (way, velocity) = carried(colliders, center, contact, substep);
             let (row, offset) = (row as u32, normal.dot(point + way));
             *place = Face { row, normal, offset, velocity, touch, bounce: 0.0, is_flat: 0 };
-        });
+        }
     }
 }
 
 impl Face {
-    /// Turns the face of scenery that stands still to where that curves to beside its particle now. From there on the particle goes along it: along a
-    /// plane that touches it elsewhere it would gain by being raised.
+    /// Turns the face to where the surface curves to beside its particle now, from where on that goes along it: along a plane that touches it elsewhere it
+    /// would gain by being raised. Where several faces are alike, as the edges of a mesh are, it stays what it is.
     pub(super) fn turn(&mut self, colliders: &dyn Collider, center: Vec3, radius: f32, now: Time) {
         if self.is_flat != 0 || !center.is_finite() {
             return;
         }
-        let (mut alike, mut nearest) = (-1.0, None);
+        let (mut alike, mut other) = (0, None);
         colliders.contacts(center, (1.0 + MARGIN) * radius, now, &mut |contact: &Contact| {
-            let likeness = contact.normal.dot(self.normal);
-            if likeness > alike {
-                (alike, nearest) = (likeness, Some(*contact));
+            if contact.normal.dot(self.normal) > ALIKE {
+                (alike, other) = (alike + 1, Some(*contact));
             }
         });
-        let Some(Contact { normal, point, .. }) = nearest else { return };
+        let Some(Contact { normal, point, .. }) = other.filter(|_| alike == 1) else { return };
         self.is_flat = u32::from(normal == self.normal);
         if self.is_flat == 0 {
             (self.normal, self.offset) = (normal, normal.dot(point));

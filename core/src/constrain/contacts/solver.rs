@@ -60,9 +60,10 @@ pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for face in faces.iter_mut().filter(|face| face.touch.is_on()) {
         pass.bounce_off(face);
-        // Of those that move all are sought anew.
-        if !colliders.moves() {
-            face.turn(colliders, pass.position[face.row as usize], pass.radius[face.row as usize], now);
+        let row = face.row as usize;
+        // What was at rest may stay.
+        if pass.v0[row] != face.velocity {
+            face.turn(colliders, pass.position[row], pass.radius[row], now);
         }
     }
     for sweep in 0..if is_last { SETTLING } else { 1 } {
