@@ -227,7 +227,7 @@ fn a_chain_wraps_itself_round_a_peg_and_rests() {
         if now > 5.5 {
             assert!(balls.position[26].y > peg.y + 0.1, "it lies on the peg");
             let kinetic: f32 = balls.velocity.iter().zip(balls.mass).map(|(v, m)| 0.5 * m * v.length_squared()).sum();
-            assert!(kinetic < 0.05, "{kinetic} J of 17 that it fell for");
+            assert!(kinetic < 0.07, "{kinetic} J of 17 that it fell for");
         }
     });
 }
