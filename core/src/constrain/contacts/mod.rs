@@ -28,6 +28,9 @@ pub(super) use touch::{TangentImpulse, Touch, bounce};
 /// for 12 sub-steps). Balls do not spin. Hits and contacts of this kind are counted in every sub-step, and
 /// [`Observer`](crate::Observer)s are told of each touch once, as it begins ([`touched`](crate::Observer::touched)).
 ///
+/// Scenery that curves takes the velocity across it where the ball is after the sub-step, so that nothing gains by sliding in a
+/// bowl (RATTLE: Andersen, J. Comput. Phys. 52, 1983); an edge that is level with the face beside it is part of that.
+///
 /// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full
 /// (`caps.contacts`), bits do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
