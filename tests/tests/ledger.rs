@@ -232,7 +232,7 @@ fn friction_has_its_line() {
     }
 }
 
-/// What slides into something has slid no farther, on the floor of a room, along the crease at a wall's foot, and round that of a tank.
+/// A slide into something is booked no farther than that, on the floor of a room, along the crease at a wall's foot, and round that of a tank.
 #[test]
 fn slides_end_where_something_stops_them() {
     let room = Cuboid { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) };

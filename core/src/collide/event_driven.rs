@@ -38,7 +38,7 @@ pub(super) struct EventDriven<'a> {
     /// Positions and velocities at the present paths' beginnings and ends.
     pub(super) starts: [&'a mut [Vec3]; 2],
     pub(super) ends: [&'a mut [Vec3]; 2],
-    /// What drives those that go along a surface, which bears some of it \[m/s²\]; not a number: it goes along none.
+    /// Accelerations that drive those who go along a surface, whatever that bears of them \[m/s²\]; not a number: it goes along none.
     pub(super) pull: &'a mut [Vec3],
     /// Positions at the step's beginning, which the index sorts.
     pub(super) home: &'a [Vec3],
