@@ -1,6 +1,7 @@
 //! The step of particles that meet, worked through in the order of time.
 
 use super::air::{Air, Until};
+use super::borne::Borne;
 use super::images::first_touch_of_images;
 use super::meeting::{Answer, Touch};
 use super::path::{Path, between};
@@ -23,6 +24,9 @@ use glam::Vec3;
 /// every bounce that the scene allows it: by default some hundred times what a heap takes. After as many again nobody is looked
 /// for where it waits.
 const FOUND_A_BOUNCE: u32 = 1 << 8;
+
+/// How many times as far as they overlap two may be moved along walls to be apart.
+const MOST_ASIDE: f32 = 64.0;
 
 /// A step whose meetings are worked through one after the other.
 pub(super) struct EventDriven<'a> {
@@ -317,7 +321,7 @@ impl EventDriven<'_> {
         let velocity = [0, 1].map(|i| if waits[i] { self.ends[1][rows[i]] } else { paths[i].v0 });
         let offset = paths[0].x0 - paths[1].x0 - image;
         let normal = Touch::along(offset, velocity);
-        let inverse_mass = rows.map(|row| self.inverse_mass[row]);
+        let (inverse_mass, borne) = (rows.map(|row| self.inverse_mass[row]), self.borne_along(rows, &paths));
         let (acceleration, free) = (paths.map(|path| path.acceleration()), paths.map(|path| path.drive()));
         let ways = paths; // Before they are set apart, which is no motion.
         let overlap = self.radius[row] + self.radius[other] - length(offset);
@@ -325,7 +329,7 @@ impl EventDriven<'_> {
             self.set_apart(rows, waits, &mut paths, normal * overlap);
         }
         let (mixed, slack) = (self.mixed(rows), self.slack(row, other));
-        let touch = Touch { normal, velocity, acceleration, free, inverse_mass, mixed, slack };
+        let touch = Touch { normal, velocity, acceleration, free, inverse_mass, mixed, slack, borne };
         let Answer { velocity: after, way, ends, slid } = self.answer(rows, waits, &ways, &touch, now);
         if let Some(slid) = &slid {
             self.observer.slid(slid);
@@ -371,6 +375,23 @@ impl EventDriven<'_> {
         }
     }
 
+    /// The walls along which two go on their paths.
+    fn borne_along(&self, rows: [usize; 2], paths: &[Path; 2]) -> [Borne; 2] {
+        [0, 1].map(|i| paths[i].pull.map_or(Borne::NOT, |_| self.borne(rows[i], &paths[i])))
+    }
+
+    /// The walls that something lies on where its path begins; of those that move nothing is known.
+    fn borne(&self, row: usize, path: &Path) -> Borne {
+        let mut borne = Borne::NOT;
+        let reach = self.radius[row] + LAIN * self.slack(row, row);
+        self.obstacles.colliders.contacts(path.x0, reach, path.during[0], &mut |contact| {
+            if contact.velocity == Vec3::ZERO {
+                borne.add(contact.normal);
+            }
+        });
+        borne
+    }
+
     /// The elasticity and friction between two.
     fn mixed(&self, rows: [usize; 2]) -> Mixed {
         let material = rows.map(|row| self.material[row].checked_sub(1));
@@ -404,26 +425,32 @@ impl EventDriven<'_> {
     }
 
     /// Moves two that overlap apart, each by its share or one for both, where no wall is in the way: what walls have set
-    /// off may have been put a little into its neighbour, and would creep on and on.
+    /// off may have been put a little into its neighbour, and would creep on and on. Two between walls give way along these.
     fn set_apart(&self, rows: [usize; 2], waits: [bool; 2], paths: &mut [Path; 2], way: Vec3) {
         let [a, b] = [0, 1].map(|i| if waits[i] { 0.0 } else { self.inverse_mass[rows[i]] });
         if a + b == 0.0 {
             return;
         }
-        let free = |i: usize, change: Vec3| {
+        let is_free = |i: usize, change: Vec3| {
             let Path { x0, during: [now, _], .. } = paths[i];
             let radius = self.radius[rows[i]];
             let there = Segment { from: x0, to: x0 + change, radius, during: [now; 2] };
             change == Vec3::ZERO || self.obstacles.colliders.first_hit(&there).is_none()
         };
-        let shares = [[a / (a + b), b / (a + b)], [1.0, 0.0], [0.0, 1.0]];
-        let allowed = shares.into_iter().find(|&[first, second]| {
-            let moves = (first == 0.0 || a > 0.0) && (second == 0.0 || b > 0.0);
-            moves && free(0, way * first) && free(1, way * -second)
-        });
-        if let Some([first, second]) = allowed {
-            paths[0].x0 += way * first;
-            paths[1].x0 -= way * second;
+        let shares = [[a / (a + b), -b / (a + b)], [1.0, 0.0], [0.0, -1.0]];
+        let moving =
+            shares.into_iter().filter(|&[first, second]| (first == 0.0 || a > 0.0) && (second == 0.0 || b > 0.0));
+        let straight = moving.map(|shares| shares.map(|share| way * share));
+        let along = || {
+            let left = [0, 1].map(|i| self.borne(rows[i], &paths[i]).left_of(way * shares[0][i]));
+            let apart = (left[0] - left[1]).dot(way);
+            let far = way.dot(way) / apart;
+            (far > 0.0 && far < MOST_ASIDE).then(|| left.map(|left| left * far))
+        };
+        let mut all = straight.chain(core::iter::once_with(along).flatten());
+        if let Some([first, second]) = all.find(|&[first, second]| is_free(0, first) && is_free(1, second)) {
+            paths[0].x0 += first;
+            paths[1].x0 += second;
         }
     }
 

@@ -1,5 +1,6 @@
 //! When two balls touch, and what that does to them.
 
+use super::borne::Borne;
 use super::path::{MAX_CHORDS, Path};
 use super::slide::Slide;
 use super::sweep::RESTING;
@@ -10,6 +11,9 @@ use glam::Vec3;
 
 /// The largest number of times that the instant of a touch is looked for on the path, as that of a hit.
 const MAX_LOOKS: u32 = 16;
+
+/// How far two that overlap may seem to come closer that do not \[slacks\].
+const ROUNDING: f32 = 0.25;
 
 /// The fraction of a path, of one ball as seen from the other, after which they come within `reach`, the sum of their
 /// radii; and whether it is so curved that it would take more chords than there are.
@@ -48,7 +52,8 @@ fn along_chord(offset: Vec3, step: Vec3, reach: f32, slack: f32) -> Option<[f32;
         return None;
     }
     if offset.dot(offset) <= reach * reach {
-        return Some([0.0, nearest]);
+        // Those that walls hold in an overlap come no closer, but for rounding in their places.
+        return (closing > ROUNDING * slack * length(offset)).then_some([0.0, nearest]);
     }
     // From the point of nearest approach of the whole line back: no difference of large squares.
     let middle = closing / square;
@@ -101,6 +106,8 @@ pub(super) struct Touch {
     pub(super) mixed: Mixed,
     /// The error that rounding may make in their distance \[m\].
     pub(super) slack: f32,
+    /// What bears each.
+    pub(super) borne: [Borne; 2],
 }
 
 impl Touch {
@@ -116,6 +123,12 @@ impl Touch {
     ///
     /// Both get the same impulse, so that momentum is what it was, but for the rounding of two sums.
     pub(super) fn answer(&self, dt: f32, rest: f32) -> Answer {
+        let on_walls = if self.borne == [Borne::NOT; 2] { None } else { self.answer_on_walls(dt, rest) };
+        on_walls.unwrap_or_else(|| self.answer_alone(dt, rest))
+    }
+
+    /// The answer of two that nothing bears.
+    fn answer_alone(&self, dt: f32, rest: f32) -> Answer {
         let (n, [a, b], [wa, wb]) = (self.normal, self.velocity, self.inverse_mass);
         let relative = a - b;
         let incoming = relative.dot(n);
@@ -180,7 +193,16 @@ mod tests {
         let mixed = Mixed { elasticity, friction: Friction::NONE };
         let velocity = [Vec3::new(-3.0, 1.0, 0.0), Vec3::new(1.0, 0.0, 0.0)];
         let still = [Vec3::ZERO; 2];
-        Touch { normal: Vec3::X, velocity, acceleration: still, free: still, inverse_mass, mixed, slack: 1e-6 }
+        Touch {
+            normal: Vec3::X,
+            velocity,
+            acceleration: still,
+            free: still,
+            inverse_mass,
+            mixed,
+            slack: 1e-6,
+            borne: [Borne::NOT; 2],
+        }
     }
 
     #[test]

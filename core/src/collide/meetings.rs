@@ -22,6 +22,9 @@ pub enum Meetings {
 /// the sub-step's end (counted in `caps.bounces`), as does one that finds others near it some ten thousand times: that is what
 /// happens in a dense heap, where every touch is a meeting; for heaps use [`Contacts`](crate::Contacts).
 /// Whichever index the scene has, the answer is the same to the bit.
+///
+/// Where walls bear one that meets another, what that pushes it into them by they take up in the same instant, without a bounce; two that stay in touch
+/// go on along their walls.
 #[derive(Clone, Copy)]
 pub struct Impulse {
     /// The function that does it. A program that does not name it does not carry it about.

@@ -1,6 +1,7 @@
 //! Collision: every path of the step is followed to its first hit, answered, and followed on with the time left.
 
 mod air;
+mod borne;
 mod crease;
 mod event_driven;
 mod images;
@@ -10,6 +11,7 @@ mod marks;
 mod meeting;
 mod meetings;
 mod near;
+mod on_walls;
 mod packet;
 mod path;
 mod paths;

@@ -1,8 +1,8 @@
 //! Hard balls without loss keep their energy for minutes, in any gravity.
 
-use pointmass::shape::Plane;
-use pointmass::{Gravity, Meetings, Method, Particle, Scene, Vec3};
-use pointmass_tests::{G, f64s, run, started};
+use pointmass::shape::{Collider, Plane};
+use pointmass::{Contacts, Gravity, Meetings, Method, Particle, Scene, Time, Vec3};
+use pointmass_tests::{G, f64s, is_run, run, started};
 
 const FLOOR: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
 
@@ -54,5 +54,74 @@ fn on_a_ball_that_is_fixed_and_on_each_other() {
         check("on a fixed ball", &[fixed, ball(2.2, 0.2, 1.0)], gravity);
         check("one over the other", &[ball(1.5, 0.3, 1.0), ball(3.0, 0.2, 0.5)], gravity);
         check("a column", &[ball(1.0, 0.2, 1.0), ball(2.0, 0.2, 2.0), ball(4.0, 0.3, 0.7)], gravity);
+    }
+}
+
+/// What a ball has along `up` above where it comes to rest [J/kg], after each of so many steps.
+fn energies(scene: &Scene<'_>, [up, rest]: [Vec3; 2], gravity: f32, h: f64, steps: u32) -> Vec<f32> {
+    let mut system = started(scene, scene.start.len(), 1);
+    let last = scene.start.len() - 1;
+    let mut energy = |i: u32| {
+        system.step(scene, Time::from_seconds_f64(h * f64::from(i)) - system.time());
+        let all = system.particles();
+        0.5 * all.velocity[last].length_squared() + gravity * (all.position[last] - rest).dot(up)
+    };
+    (0..=steps).map(&mut energy).collect()
+}
+
+/// Contacts by position find a ball deep in the floor, and faster than it came there by what gravity has done since: a bounce gives back the elasticity's share of
+/// what it came with, and no more, however long the sub-steps are.
+#[test]
+fn by_position_each_bounce_gives_back_the_share_of_its_elasticity() {
+    let mut cases = 0;
+    for up in [Vec3::Y, Vec3::new(0.6, 0.0, -0.8), Vec3::new(2.0, 3.0, -6.0) / 7.0] {
+        for (elasticity, gravity, radius) in [(1.0, 9.8, 0.1), (0.8, 1.62, 0.4), (0.5, 24.8, 0.1)] {
+            for (rate, substeps) in [(24.0, 1), (24.0, 4), (60.0, 1), (60.0, 12), (144.0, 2)] {
+                for method in [Method::Midpoint, Method::Verlet, Method::Rk4, Method::Embedded] {
+                    for is_ball in [false, true] {
+                        if !is_run(&mut cases) {
+                            continue;
+                        }
+                        let floor = Plane { point: Vec3::ONE, normal: up };
+                        let ball = |high: f32| Particle {
+                            position: Vec3::ONE + up * high,
+                            radius,
+                            elasticity,
+                            ..Particle::REST
+                        };
+                        let below = Particle { fixed: true, ..ball(-radius) };
+                        let start = [below, ball(1.0 + radius)];
+                        let colliders: &dyn Collider = if is_ball { &() } else { &floor };
+                        let scene = Scene {
+                            start: if is_ball { &start } else { &start[1..] },
+                            forces: &Gravity { acceleration: -up * gravity },
+                            constraints: &Contacts::HARD,
+                            integrator: method.integrator(),
+                            colliders,
+                            substeps,
+                            ..Scene::EMPTY
+                        };
+                        let rest = Vec3::ONE + up * radius;
+                        let all = energies(&scene, [up, rest], gravity, 1.0 / rate, (8.0 * rate) as u32);
+                        let case =
+                            format!("{elasticity}, {rate}/{substeps}, {method}, {gravity} along {up}, {is_ball}");
+                        // From as fast on two bounces may be in one step.
+                        let least = 0.5 * (2.0 * gravity / rate as f32).powi(2);
+                        let mut bounces = 0;
+                        for (one, next) in all.iter().zip(&all[1..]).take_while(|(_, next)| **next > least) {
+                            let share = next / one;
+                            let square = elasticity * elasticity;
+                            bounces += u32::from((share - 1.0).abs() > 1e-3);
+                            // Off a ball it goes ever more askew.
+                            let close = if is_ball { 1e-2 } else { 2e-3 };
+                            let is_kept = (share - 1.0).abs() < 1e-3 || (share / square - 1.0).abs() < close;
+                            assert!(is_kept, "{case}: {next} of {one}");
+                        }
+                        assert!(bounces > 0 || elasticity == 1.0, "{case}: {all:?}");
+                        assert!((all[0] / gravity - 1.0).abs() < 1e-5, "{case}");
+                    }
+                }
+            }
+        }
     }
 }

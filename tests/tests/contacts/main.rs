@@ -8,6 +8,7 @@ mod events;
 mod fast;
 mod force;
 mod friction;
+mod funnels;
 mod gas;
 mod impulse;
 mod meetings;

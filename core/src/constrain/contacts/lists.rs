@@ -36,6 +36,8 @@ pub(super) struct Pair {
     pub(super) rows: [u32; 2],
     /// By how much the lower one counts as heavier, as a share: above zero if that is the second, below if the first.
     pub(super) lean: f32,
+    /// What forces have added to the square of the speed at which they came together since they touched \[m²/s²\].
+    pub(super) gained: f32,
     pub(super) touch: Touch,
 }
 
@@ -151,7 +153,7 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
         let of_both = [a, b].map(|row| material[row].checked_sub(1));
         let touch = Touch::new(of_two(materials, [elasticity[a], elasticity[b]], of_both));
         lists.rough |= u32::from(touch.has_friction());
-        *place = Pair { rows: if row > other { [row, other] } else { [other, row] }, lean: 0.0, touch };
+        *place = Pair { rows: if row > other { [row, other] } else { [other, row] }, lean: 0.0, gained: 0.0, touch };
         lists.pairs += 1;
     });
 }

@@ -28,6 +28,10 @@ pub(super) use touch::{TangentImpulse, Touch, bounce};
 /// for 12 sub-steps). Balls do not spin. Hits and contacts of this kind are counted in every sub-step, and
 /// [`Observer`](crate::Observer)s are told of each touch once, as it begins ([`touched`](crate::Observer::touched)).
 ///
+/// A bounce gives back the elasticity's share of the speed with which two touched, without what forces have added on the way that they were too close by then: at an
+/// elasticity of one a ball keeps its energy however long the sub-steps are (with methods of second order on; those of first order lose some, as on
+/// scenery alone).
+///
 /// Scenery that curves takes the velocity across it where the ball is after the sub-step, so that nothing gains by sliding in a
 /// bowl (RATTLE: Andersen, J. Comput. Phys. 52, 1983); an edge that is level with the face beside it is part of that.
 ///

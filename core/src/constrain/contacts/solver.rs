@@ -59,7 +59,6 @@ pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f
     let (colliders, now) = (bodies.colliders, bodies.substep.during[1]);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for face in faces.iter_mut().filter(|face| face.touch.is_on()) {
-        pass.bounce_off(face);
         let row = face.row as usize;
         // What was at rest may stay.
         if pass.v0[row] != face.velocity {
@@ -229,6 +228,8 @@ impl<'a> Pass<'a> {
         let moved = max(overlap + lag, 0.0) * ((wa + wb) / (wa + wb + self.softness));
         let felt = min(moved * self.rate, closing + self.calm);
         pair.touch.begin(felt);
+        let drift = (self.drift[a] - self.drift[b]).dot(normal);
+        pair.gained = self.gained(moved + drift, &|v: &[Vec3]| (v[a] - v[b]).dot(normal));
         let share = normal * (1.0 / (wa + wb));
         self.position[a] += share * (moved * wa);
         self.position[b] -= share * (moved * wb);
@@ -237,7 +238,7 @@ impl<'a> Pass<'a> {
         if self.softness > 0.0 {
             return;
         }
-        let drift = share * (self.drift[a] - self.drift[b]).dot(normal);
+        let drift = share * drift;
         self.drift[a] -= drift * wa;
         self.drift[b] += drift * wb;
     }
@@ -255,6 +256,9 @@ impl<'a> Pass<'a> {
         let moved = max(overlap + lag, 0.0) * (w / (w + self.softness));
         let felt = min(moved * self.rate, closing + self.calm);
         face.touch.begin(felt);
+        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(face.normal);
+        let gained = self.gained(moved + self.drift[row].dot(face.normal), &along);
+        face.bounce = self.bounce(face.touch.elasticity, gained, &along);
         self.position[row] += face.normal * moved;
         self.velocity[row] += face.normal * felt;
         if self.softness == 0.0 {
@@ -331,7 +335,8 @@ impl<'a> Pass<'a> {
     fn press_pair(&mut self, pair: &mut Pair) {
         let ([a, b], normal) = self.ends(pair);
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        let change = pair.touch.press(self.bounce(pair.touch.elasticity, &along), along(self.velocity));
+        let bounce = self.bounce(pair.touch.elasticity, pair.gained, &along);
+        let change = pair.touch.press(bounce, along(self.velocity));
         let (wa, wb) = self.weights(pair);
         let share = normal * (1.0 / (wa + wb));
         self.velocity[a] += share * (change * wa);
@@ -340,12 +345,6 @@ impl<'a> Pass<'a> {
             let (upper, side) = if pair.lean > 0.0 { (a, wa) } else { (b, -wb) };
             self.borne[upper] += share * (pair.touch.pressed() * side);
         }
-    }
-
-    /// Finds out how fast a particle and a face are to part.
-    fn bounce_off(&self, face: &mut Face) {
-        let row = face.row as usize;
-        face.bounce = self.bounce(face.touch.elasticity, &|v: &[Vec3]| (v[row] - face.velocity).dot(face.normal));
     }
 
     fn press_face(&mut self, face: &mut Face) {
@@ -380,7 +379,7 @@ impl<'a> Pass<'a> {
         self.drift[a] += drift * wa;
         self.drift[b] -= drift * wb;
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        if taken == -slip && wa * wb == 0.0 && self.bounce(pair.touch.elasticity, &along) == 0.0 {
+        if taken == -slip && wa * wb == 0.0 && self.bounce(pair.touch.elasticity, pair.gained, &along) == 0.0 {
             let reach = self.radius[a] + self.radius[b];
             let gap = length(between(self.room, self.x0[b], self.x0[a])) - reach;
             let [row, other] = if wa > 0.0 { [a, b] } else { [b, a] };
@@ -440,12 +439,21 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// The speed at which two are to part: the elastic answer to their approach, or none where the bounce would be over
-    /// within a part of the step.
+    /// What forces have added to the square of the speed at which two came together since they touched, as they were so far too close \[m²/s²\].
     #[inline(always)]
-    fn bounce(&self, elasticity: f32, along: &impl Fn(&[Vec3]) -> f32) -> f32 {
+    fn gained(&self, depth: f32, along: &impl Fn(&[Vec3]) -> f32) -> f32 {
+        2.0 * (along(self.v0) - along(self.pushed)) * self.rate * depth
+    }
+
+    /// The speed at which two are to part: the elastic answer to their approach as they touched, or none where the bounce would be over
+    /// within a part of the step. What was `gained` since is not given back: they part from where they touched.
+    #[inline(always)]
+    fn bounce(&self, elasticity: f32, gained: f32, along: &impl Fn(&[Vec3]) -> f32) -> f32 {
         let approach = along(self.pushed);
-        let bounce = max(-approach * elasticity, 0.0);
+        if !(approach < 0.0 && elasticity > 0.0) {
+            return 0.0;
+        }
+        let bounce = sqrt(max(approach * approach - gained, 0.0)) * elasticity;
         if bounce > 0.0 {
             let pressing = max(along(self.v0) - approach, 0.0) * self.rate;
             if 2.0 * bounce < RESTING * self.long * pressing {
