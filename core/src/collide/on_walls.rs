@@ -10,7 +10,7 @@ use crate::math::length;
 use crate::observe::Sliding;
 use glam::Vec3;
 
-/// The least part of what two that meet yield of what they would without walls.
+/// The least part by which something that meets another yields of that by which it would without walls.
 const YIELDS: f32 = 1e-3;
 
 /// The part of two accelerations by which what stays in touch may seem to part or to come closer, by rounding.
@@ -25,9 +25,12 @@ impl Touch {
         let (n, [wa, wb]) = (self.normal, self.inverse_mass);
         let sides = [n * wa, n * -wb];
         // How an impulse of one moves each.
-        let moved = [0, 1].map(|i| self.borne[i].left_of(sides[i]));
+        let moved = [0, 1].map(|i| {
+            let (side, left) = (sides[i], self.borne[i].left_of(sides[i]));
+            if left.dot(side) > YIELDS * side.dot(side) { left } else { Vec3::ZERO }
+        });
         let yielding = (moved[0] - moved[1]).dot(n);
-        if !(yielding > YIELDS * (wa + wb)) {
+        if !(yielding > 0.0) {
             return None;
         }
         let relative = self.velocity[0] - self.velocity[1];

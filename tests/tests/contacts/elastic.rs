@@ -1,6 +1,6 @@
 //! Hard balls without loss keep their energy for minutes, in any gravity.
 
-use pointmass::shape::{Collider, Plane};
+use pointmass::shape::{Capsule, Collider, Cylinder, Plane, Sphere};
 use pointmass::{Contacts, Gravity, Meetings, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{G, f64s, is_run, run, started};
 
@@ -119,6 +119,61 @@ fn by_position_each_bounce_gives_back_the_share_of_its_elasticity() {
                         }
                         assert!(bounces > 0 || elasticity == 1.0, "{case}: {all:?}");
                         assert!((all[0] / gravity - 1.0).abs() < 1e-5, "{case}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What bounces off scenery that curves does so along one normal, that of the plane by which its approach is known: off two it would gain or lose by how much they
+/// differ, by each hit.
+#[test]
+fn by_position_what_curves_neither_gives_nor_takes() {
+    let mut cases = 0;
+    let bowl = Sphere { center: Vec3::ONE, radius: 1.0 };
+    let dome = Sphere { center: Vec3::ONE, radius: 0.3 };
+    let pipe = Capsule { from: Vec3::ONE - Vec3::Z, to: Vec3::ONE + Vec3::Z, radius: 0.8 };
+    let pin = Cylinder { center: Vec3::ONE, radius: 0.05, height: 4.0 };
+    let (inside, above) = (Vec3::new(0.3, 0.2, -0.1), Vec3::new(0.15, 1.5, 0.05));
+    let aside = Vec3::new(0.05, 0.0, 0.9);
+    let all: [(&str, &dyn Collider, Vec3, Vec3); 5] = [
+        ("a bowl", &bowl, inside, Vec3::new(2.0, 1.0, -1.5)),
+        ("a bowl from rest", &bowl, inside, Vec3::ZERO),
+        ("a pipe", &pipe, inside, Vec3::new(-1.0, 0.0, 2.0)),
+        ("a dome", &dome, above, Vec3::new(0.1, -2.0, 0.0)),
+        ("a pin", &pin, aside, Vec3::new(0.0, 1.0, -3.0)),
+    ];
+    for (name, colliders, from, velocity) in all {
+        for gravity in [0.0, 9.8] {
+            for (rate, substeps) in [(60.0, 1), (60.0, 4), (60.0, 12), (144.0, 2)] {
+                for method in [Method::Midpoint, Method::Verlet, Method::Rk4, Method::Embedded] {
+                    for radius in [0.02, 0.1, 0.2] {
+                        if !is_run(&mut cases) || gravity == 0.0 && velocity == Vec3::ZERO {
+                            continue;
+                        }
+                        let ball = Particle {
+                            position: Vec3::ONE + from,
+                            velocity,
+                            radius,
+                            elasticity: 1.0,
+                            ..Particle::REST
+                        };
+                        let scene = Scene {
+                            start: &[ball],
+                            forces: &Gravity { acceleration: Vec3::NEG_Y * gravity },
+                            constraints: &Contacts::HARD,
+                            integrator: method.integrator(),
+                            colliders,
+                            substeps,
+                            ..Scene::EMPTY
+                        };
+                        let all = energies(&scene, [Vec3::Y, Vec3::ZERO], gravity, 1.0 / rate, (4.0 * rate) as u32);
+                        let (least, most) =
+                            (all.iter().copied().fold(all[0], f32::min), all.iter().copied().fold(all[0], f32::max));
+                        let spread = (most - least) / all[0];
+                        let case = format!("{name}, {radius}, {gravity}, {rate}/{substeps}, {method}");
+                        assert!(spread < 0.01, "{case}: from {least} to {most} of {}", all[0]);
                     }
                 }
             }
