@@ -60,8 +60,8 @@ pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for face in faces.iter_mut().filter(|face| face.touch.is_on()) {
         let row = face.row as usize;
-        // What was at rest may stay; what bounces does so along the normal by which its approach is known.
-        if face.bounce == 0.0 && pass.v0[row] != face.velocity {
+        // What was at rest may stay; what bounces higher than by what drives it does so along the normal by which its approach is known.
+        if face.bounce <= pass.calm && pass.v0[row] != face.velocity {
             face.turn(colliders, pass.position[row], pass.radius[row], now);
         }
     }
