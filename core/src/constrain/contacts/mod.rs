@@ -32,7 +32,7 @@ pub(super) use touch::{TangentImpulse, Touch, bounce};
 /// elasticity of one a ball keeps its energy however long the sub-steps are (with methods of second order on; those of first order lose some, as on
 /// scenery alone).
 ///
-/// Scenery that curves takes the velocity across it where the ball is after the sub-step, so that nothing gains by sliding in a
+/// Scenery that curves takes the velocity across it where the ball is after the sub-step, if that does not bounce, so that nothing gains by sliding in a
 /// bowl (RATTLE: Andersen, J. Comput. Phys. 52, 1983); an edge that is level with the face beside it is part of that.
 ///
 /// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full
