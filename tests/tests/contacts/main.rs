@@ -1,5 +1,7 @@
 //! Particles that have a radius meet each other: by impulse, by force, by position.
 
+mod askew;
+mod at_once;
 mod bounds;
 mod bowls;
 mod drums;

@@ -23,10 +23,10 @@ const LEVEL: f32 = 4.0;
 const ALIKE: f32 = 0.5;
 /// Contacts with the scenery around a particle.
 type Around = heapless::Vec<Contact, 16>;
-/// The words kept through the step: for each particle a velocity, a drift, two loads, pairs and faces, and how long the
+/// The words kept through the step: for each particle two velocities, a drift, two loads, pairs and faces, and how long the
 /// lists are.
 pub(super) const KEPT: Words =
-    Words { per_row: 4 * 3 + PAIR_WORDS + FACES * (size_of::<Face>() / 4), fixed: size_of::<Listed>() / 4 };
+    Words { per_row: 5 * 3 + PAIR_WORDS + FACES * (size_of::<Face>() / 4), fixed: size_of::<Listed>() / 4 };
 const PAIR_WORDS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>()) * 3;
 
 /// Two that may touch in the step, and what they do to each other then.
@@ -36,8 +36,8 @@ pub(super) struct Pair {
     pub(super) rows: [u32; 2],
     /// By how much the lower one counts as heavier, as a share: above zero if that is the second, below if the first.
     pub(super) lean: f32,
-    /// What forces have added to the square of the speed at which they came together since they touched \[m²/s²\].
-    pub(super) gained: f32,
+    /// By how much bounces have changed the speed at which they part \[m/s\].
+    pub(super) given: f32,
     pub(super) touch: Touch,
 }
 
@@ -52,10 +52,12 @@ pub(super) struct Face {
     /// How it moves the particle then \[m/s\].
     pub(super) velocity: Vec3,
     pub(super) touch: Touch,
-    /// The speed at which the two are to part after it \[m/s\].
-    pub(super) bounce: f32,
+    /// By how much bounces have changed the speed at which the two part \[m/s\].
+    pub(super) given: f32,
     /// 1 if the surface has been found to be flat there.
     pub(super) is_flat: u32,
+    /// 1 if the particle came there from afar in the sub-step.
+    pub(super) struck: u32,
 }
 
 /// How long the lists are, and what else is to be known of the sub-step.
@@ -72,6 +74,8 @@ pub(super) struct Listed {
     pub(super) sorted: u32,
     /// 1 if any of them has friction.
     pub(super) rough: u32,
+    /// The fastest bounce of the sub-step \[m/s\].
+    pub(super) hardest: f32,
     /// The mean change of all velocities in the sub-step \[m/s\].
     pub(super) driven: Vec3,
 }
@@ -80,6 +84,8 @@ pub(super) struct Listed {
 pub(super) struct Kept<'a> {
     /// Velocities when the method has moved all.
     pub(super) pushed: &'a mut [Vec3],
+    /// What bounces alone, one after the other, make of these.
+    pub(super) thrown: &'a mut [Vec3],
     pub(super) drift: &'a mut [Vec3],
     /// The pushes that carry each particle, summed, and what it should carry beyond them.
     pub(super) borne: &'a mut [Vec3],
@@ -93,13 +99,13 @@ impl<'a> Kept<'a> {
     /// None: the memory is too small.
     pub(super) fn of(mut memory: &'a mut [u32], capacity: usize) -> Option<Self> {
         let lists = bytemuck::cast_slice_mut(take(&mut memory, KEPT.fixed)).first_mut()?;
-        let [pushed, drift, borne, owed] = [(); 4].map(|()| take_vectors(&mut memory, capacity));
+        let [pushed, thrown, drift, borne, owed] = [(); 5].map(|()| take_vectors(&mut memory, capacity));
         let pairs = take(&mut memory, PAIR_WORDS * capacity);
         let whole = pairs.len() - pairs.len() % (size_of::<Pair>() / 4);
         let pairs = bytemuck::cast_slice_mut(&mut pairs[..whole]);
         let faces = memory.len() - memory.len() % (size_of::<Face>() / 4);
         let faces = bytemuck::cast_slice_mut(&mut memory[..faces]);
-        Some(Self { pushed, drift, borne, owed, pairs, faces, lists })
+        Some(Self { pushed, thrown, drift, borne, owed, pairs, faces, lists })
     }
 }
 
@@ -153,7 +159,7 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
         let of_both = [a, b].map(|row| material[row].checked_sub(1));
         let touch = Touch::new(of_two(materials, [elasticity[a], elasticity[b]], of_both));
         lists.rough |= u32::from(touch.has_friction());
-        *place = Pair { rows: if row > other { [row, other] } else { [other, row] }, lean: 0.0, gained: 0.0, touch };
+        *place = Pair { rows: if row > other { [row, other] } else { [other, row] }, lean: 0.0, given: 0.0, touch };
         lists.pairs += 1;
     });
 }
@@ -214,7 +220,7 @@ fn gather_faces(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, seconds: f32) {
             lists.rough |= u32::from(touch.has_friction());
             let (way, velocity) = carried(colliders, center, contact, substep);
             let (row, offset) = (row as u32, normal.dot(point + way));
-            *place = Face { row, normal, offset, velocity, touch, bounce: 0.0, is_flat: 0 };
+            *place = Face { row, normal, offset, velocity, touch, given: 0.0, is_flat: 0, struck: 0 };
         }
     }
 }

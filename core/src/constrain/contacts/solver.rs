@@ -8,10 +8,18 @@ use crate::index::{Room, between};
 use crate::math::{aside, largest, length, max, min, sqrt, unit};
 use crate::observe::Impact;
 use crate::particles::Id;
+use crate::shape::Collider;
+use crate::time::Time;
 use glam::Vec3;
 
 /// Sweeps over the velocities at a step's end, so that what rests shows it.
 const SETTLING: u32 = 2;
+/// How often at most a bounce may lead to others in a sub-step.
+const BOUNCES: u32 = 64;
+/// How often a face is turned to where a particle struck it.
+const TURNS: u32 = 2;
+/// What is slower than this share of the hardest bounce leads to no others.
+const FAINT: f32 = 1e-3;
 /// How much lighter the lower of two that rest on each other counts for each other, as a share.
 const SUPPORT: f32 = 0.6;
 /// The number of roundings that each particle's velocity may have gone through. Gravity that adds less than that in a sub-step, in one of a hundredth of a
@@ -22,6 +30,8 @@ const ROUNDINGS: f32 = 8.0;
 pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
     let (len, h) = (bodies.len(), bodies.substep.seconds());
     kept.pushed[..len].copy_from_slice(bodies.velocity);
+    kept.thrown[..len].copy_from_slice(bodies.velocity);
+    kept.lists.hardest = 0.0;
     let [x, v] = bodies.before;
     for (row, drift) in kept.drift[..len].iter_mut().enumerate() {
         *drift = bodies.position[row] - x[row] - (v[row] + bodies.velocity[row]) * (0.5 * h);
@@ -56,13 +66,13 @@ fn driven(bodies: &Bodies<'_>) -> Vec3 {
 /// Answers the approach of what touches by the elasticity and the slip by friction.
 pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
     let (is_last, rough) = (bodies.substep.is_last(), kept.lists.rough != 0);
-    let (colliders, now) = (bodies.colliders, bodies.substep.during[1]);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
+    pass.bounce_on(pairs, faces);
     for face in faces.iter_mut().filter(|face| face.touch.is_on()) {
         let row = face.row as usize;
         // What was at rest may stay; what bounces higher than by what drives it does so along the normal by which its approach is known.
-        if face.bounce <= pass.calm && pass.v0[row] != face.velocity {
-            face.turn(colliders, pass.position[row], pass.radius[row], now);
+        if face.struck == 0 && face.given <= 2.0 * pass.calm && pass.v0[row] != face.velocity {
+            face.turn(pass.colliders, pass.position[row], pass.radius[row], pass.now);
         }
     }
     for sweep in 0..if is_last { SETTLING } else { 1 } {
@@ -134,6 +144,8 @@ struct Pass<'a> {
     v0: &'a [Vec3],
     /// Velocities as the integrator left them.
     pushed: &'a [Vec3],
+    /// What bounces alone, one after the other, make of these.
+    thrown: &'a mut [Vec3],
     /// How far positions are from where the mean of the velocities before and now leads \[m\]: by half of what forces do in
     /// the sub-step with methods of first order, hardly with others. Contacts take out what lies in their way.
     drift: &'a mut [Vec3],
@@ -143,6 +155,9 @@ struct Pass<'a> {
     owed: &'a mut [Vec3],
     position: &'a mut [Vec3],
     velocity: &'a mut [Vec3],
+    colliders: &'a dyn Collider,
+    /// When the sub-step ends.
+    now: Time,
     /// The room through whose sides they touch, if there is one.
     room: Option<&'a Room>,
     radius: &'a [f32],
@@ -158,6 +173,10 @@ struct Pass<'a> {
     long: f32,
     /// True if somebody is so fast that two could pass each other.
     fast: bool,
+    /// The fastest bounce of the sub-step so far \[m/s\].
+    hardest: &'a mut f32,
+    /// What slower ones than that do after others are no bounces \[m/s\].
+    least: f32,
 }
 
 impl<'a> Pass<'a> {
@@ -176,10 +195,13 @@ impl<'a> Pass<'a> {
             x0: bodies.before[0],
             v0: bodies.before[1],
             pushed: &kept.pushed[..len],
+            thrown: &mut kept.thrown[..len],
             drift: &mut kept.drift[..len],
             borne: &mut kept.borne[..len],
             owed: &mut kept.owed[..len],
             position: bodies.position,
+            colliders: bodies.colliders,
+            now: substep.during[1],
             room: bodies.near.room(),
             velocity: bodies.velocity,
             radius: bodies.radius,
@@ -189,6 +211,8 @@ impl<'a> Pass<'a> {
             softness: compliance / (h * h),
             long: substep.step.seconds(),
             fast: lists.fast != 0,
+            hardest: &mut lists.hardest,
+            least: 0.0,
         };
         if lists.sorted == 0 {
             lists.sorted = 1;
@@ -221,18 +245,21 @@ impl<'a> Pass<'a> {
         if !(overlap > 0.0 || overlap > -slack && closing > 0.0) {
             return;
         }
-        let calm = (self.pushed[a] - self.pushed[b]).dot(normal).abs() <= self.calm;
+        let calm = (self.thrown[a] - self.thrown[b]).dot(normal).abs() <= self.calm;
         pair.lean = if calm { SUPPORT * self.hardness(a, b) * normal.dot(self.up) } else { 0.0 };
         let (wa, wb) = self.weights(pair);
         let lag = self.catch_up(a, normal) - self.catch_up(b, normal);
         let moved = max(overlap + lag, 0.0) * ((wa + wb) / (wa + wb + self.softness));
         let felt = min(moved * self.rate, closing + self.calm);
-        pair.touch.begin(felt);
         let drift = (self.drift[a] - self.drift[b]).dot(normal);
-        pair.gained = self.gained(moved + drift, &|v: &[Vec3]| (v[a] - v[b]).dot(normal));
         let share = normal * (1.0 / (wa + wb));
         self.position[a] += share * (moved * wa);
         self.position[b] -= share * (moved * wb);
+        pair.touch.begin(0.0);
+        pair.given = 0.0;
+        self.bounce_pair(pair, normal, moved + drift);
+        let felt = max(felt - pair.given, 0.0);
+        pair.touch.give(felt);
         self.velocity[a] += share * (felt * wa);
         self.velocity[b] -= share * (felt * wb);
         if self.softness > 0.0 {
@@ -246,24 +273,43 @@ impl<'a> Pass<'a> {
     fn move_from_face(&mut self, face: &mut Face) {
         let row = face.row as usize;
         let (w, radius) = (self.inverse_mass[row], self.radius[row]);
-        let overlap = radius - (self.position[row].dot(face.normal) - face.offset);
         face.touch.end();
-        let closing = max((face.velocity - self.velocity[row]).dot(face.normal), 0.0);
-        if !(overlap > 0.0 || overlap > -self.slack(row, radius) && closing > 0.0) {
-            return;
+        let Some((mut overlap, mut closing)) = self.meets(face) else { return };
+        // What comes faster than by what drives it is answered as the surface is where it has touched that: the face is another on the way there.
+        for _ in 0..if closing > self.calm { TURNS } else { 0 } {
+            let back = (self.velocity[row] - face.velocity) * min(max(overlap, 0.0) / closing, self.h);
+            face.turn(self.colliders, self.position[row] - back, radius, self.now);
+            let Some(turned) = self.meets(face) else { return };
+            (overlap, closing) = turned;
         }
+        face.struck = u32::from(closing > self.calm && self.gap(face) > self.slack(row, radius));
         let lag = self.catch_up(row, face.normal);
         let moved = max(overlap + lag, 0.0) * (w / (w + self.softness));
         let felt = min(moved * self.rate, closing + self.calm);
-        face.touch.begin(felt);
-        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(face.normal);
-        let gained = self.gained(moved + self.drift[row].dot(face.normal), &along);
-        face.bounce = self.bounce(face.touch.elasticity, gained, &along);
         self.position[row] += face.normal * moved;
+        face.touch.begin(0.0);
+        face.given = 0.0;
+        self.bounce_face(face, moved + self.drift[row].dot(face.normal));
+        let felt = max(felt - face.given, 0.0);
+        face.touch.give(felt);
         self.velocity[row] += face.normal * felt;
         if self.softness == 0.0 {
             self.drift[row] = aside(self.drift[row], face.normal);
         }
+    }
+
+    /// How far a particle and a face overlap, and how fast they come together, if they touch.
+    fn meets(&self, face: &Face) -> Option<(f32, f32)> {
+        let row = face.row as usize;
+        let overlap = self.radius[row] - (self.position[row].dot(face.normal) - face.offset);
+        let closing = max((face.velocity - self.velocity[row]).dot(face.normal), 0.0);
+        (overlap > 0.0 || overlap > -self.slack(row, self.radius[row]) && closing > 0.0).then_some((overlap, closing))
+    }
+
+    /// How far a particle was from a face before the sub-step \[m\].
+    fn gap(&self, face: &Face) -> f32 {
+        let row = face.row as usize;
+        (self.x0[row] + face.velocity * self.h).dot(face.normal) - face.offset - self.radius[row]
     }
 
     /// Moves a particle along the normal of a soft contact to where its velocity leads, and tells how far behind it was \[m\]. A contact answers forces
@@ -330,13 +376,11 @@ impl<'a> Pass<'a> {
         if *lean > 0.0 { (wa, wb * (1.0 - lean)) } else { (wa * (1.0 + lean), wb) }
     }
 
-    /// Lets two part as fast as their elasticity wants.
+    /// Takes from two what they come together with.
     #[inline(always)]
     fn press_pair(&mut self, pair: &mut Pair) {
         let ([a, b], normal) = self.ends(pair);
-        let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        let bounce = self.bounce(pair.touch.elasticity, pair.gained, &along);
-        let change = pair.touch.press(bounce, along(self.velocity));
+        let change = pair.touch.part(pair.given, (self.velocity[a] - self.velocity[b]).dot(normal));
         let (wa, wb) = self.weights(pair);
         let share = normal * (1.0 / (wa + wb));
         self.velocity[a] += share * (change * wa);
@@ -350,7 +394,7 @@ impl<'a> Pass<'a> {
     fn press_face(&mut self, face: &mut Face) {
         let row = face.row as usize;
         let parting = (self.velocity[row] - face.velocity).dot(face.normal);
-        let change = face.touch.press(face.bounce, parting);
+        let change = face.touch.part(face.given, parting);
         self.velocity[row] += face.normal * change;
         self.borne[row] += face.normal * face.touch.pressed();
     }
@@ -378,8 +422,7 @@ impl<'a> Pass<'a> {
         self.position[b] -= share * wb;
         self.drift[a] += drift * wa;
         self.drift[b] -= drift * wb;
-        let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
-        if taken == -slip && wa * wb == 0.0 && self.bounce(pair.touch.elasticity, pair.gained, &along) == 0.0 {
+        if taken == -slip && wa * wb == 0.0 && pair.given == 0.0 {
             let reach = self.radius[a] + self.radius[b];
             let gap = length(between(self.room, self.x0[b], self.x0[a])) - reach;
             let [row, other] = if wa > 0.0 { [a, b] } else { [b, a] };
@@ -401,11 +444,9 @@ impl<'a> Pass<'a> {
         let back = hold_back(taken, aside(self.drift[row], normal), self.h);
         self.position[row] += back;
         self.drift[row] += back - taken * (0.5 * self.h);
-        if taken == -slip && face.bounce == 0.0 {
-            let way = face.velocity * self.h;
-            let gap = (self.x0[row] + way).dot(normal) - face.offset - self.radius[row];
-            let touched = gap.abs() <= self.slack(row, self.radius[row]);
-            self.keep(row, face.velocity, touched && self.v0[row] == face.velocity, way);
+        if taken == -slip && face.given == 0.0 {
+            let touched = self.gap(face).abs() <= self.slack(row, self.radius[row]);
+            self.keep(row, face.velocity, touched && self.v0[row] == face.velocity, face.velocity * self.h);
         }
     }
 
@@ -439,27 +480,65 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// What forces have added to the square of the speed at which two came together since they touched, as they were so far too close \[m²/s²\].
-    #[inline(always)]
-    fn gained(&self, depth: f32, along: &impl Fn(&[Vec3]) -> f32) -> f32 {
-        2.0 * (along(self.v0) - along(self.pushed)) * self.rate * depth
-    }
-
-    /// The speed at which two are to part: the elastic answer to their approach as they touched, or none where the bounce would be over
-    /// within a part of the step. What was `gained` since is not given back: they part from where they touched.
-    #[inline(always)]
-    fn bounce(&self, elasticity: f32, gained: f32, along: &impl Fn(&[Vec3]) -> f32) -> f32 {
-        let approach = along(self.pushed);
-        if !(approach < 0.0 && elasticity > 0.0) {
-            return 0.0;
-        }
-        let bounce = sqrt(max(approach * approach - gained, 0.0)) * elasticity;
-        if bounce > 0.0 {
-            let pressing = max(along(self.v0) - approach, 0.0) * self.rate;
-            if 2.0 * bounce < RESTING * self.long * pressing {
-                return 0.0;
+    /// Lets what bounces have thrown against others bounce on these, until nothing does any more or often enough.
+    fn bounce_on(&mut self, pairs: &mut [Pair], faces: &mut [Face]) {
+        self.least = max(self.calm, FAINT * *self.hardest);
+        for _ in 0..BOUNCES {
+            if *self.hardest == 0.0 {
+                return;
+            }
+            *self.hardest = 0.0;
+            faces.iter_mut().filter(|face| face.touch.is_on()).for_each(|face| self.bounce_face(face, 0.0));
+            for pair in pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()) {
+                let (_, normal) = self.ends(pair);
+                self.bounce_pair(pair, normal, 0.0);
             }
         }
-        bounce
+    }
+
+    /// Lets two bounce that are too close by `depth` on whose way forces have acted \[m\].
+    #[inline(always)]
+    fn bounce_pair(&mut self, pair: &mut Pair, normal: Vec3, depth: f32) {
+        let [a, b] = pair.rows.map(|row| row as usize);
+        let Some([change, given]) = self.bounce(pair.touch.elasticity, depth, &|v| (v[a] - v[b]).dot(normal)) else {
+            return;
+        };
+        let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
+        let share = normal * (1.0 / (wa + wb));
+        self.thrown[a] += share * (change * wa);
+        self.thrown[b] -= share * (change * wb);
+        self.velocity[a] += share * (given * wa);
+        self.velocity[b] -= share * (given * wb);
+        pair.touch.give(given);
+        pair.given += given;
+    }
+
+    /// The same against a face.
+    #[inline(always)]
+    fn bounce_face(&mut self, face: &mut Face, depth: f32) {
+        let (row, normal) = (face.row as usize, face.normal);
+        let along = |v: &[Vec3]| (v[row] - face.velocity).dot(normal);
+        let Some([change, given]) = self.bounce(face.touch.elasticity, depth, &along) else { return };
+        self.thrown[row] += normal * change;
+        self.velocity[row] += normal * given;
+        face.touch.give(given);
+        face.given += given;
+    }
+
+    /// By how much the speed changes at which two part that come together: the elastic answer to their approach as they touched, without what forces have
+    /// added in the `depth` since. None where the bounce would be over within a part of the step, but for those that come faster than
+    /// by what drives them: these stop each other, which is no bounce, but others have to know. And how much of that is a bounce's.
+    #[inline(always)]
+    fn bounce(&mut self, elasticity: f32, depth: f32, along: &impl Fn(&[Vec3]) -> f32) -> Option<[f32; 2]> {
+        let (approach, pressing) = (along(self.thrown), (along(self.v0) - along(self.pushed)) * self.rate);
+        if !(approach < 0.0) {
+            return None;
+        }
+        let bounce = sqrt(max(approach * approach - 2.0 * pressing * depth, 0.0)) * elasticity;
+        if bounce > 0.0 && 2.0 * bounce >= RESTING * max(self.long * pressing, self.least) {
+            *self.hardest = max(*self.hardest, bounce);
+            return Some([bounce - approach; 2]);
+        }
+        (-approach > self.calm).then_some([-approach, 0.0])
     }
 }

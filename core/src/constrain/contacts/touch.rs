@@ -83,6 +83,18 @@ impl Touch {
         change
     }
 
+    /// A bounce has changed the speed at which they part by so much more.
+    pub(super) fn give(&mut self, more: f32) {
+        self.pressed += more;
+    }
+
+    /// How the speed at which they part has to change for them not to come together. What bounces have `given` of it stays.
+    pub(super) fn part(&mut self, given: f32, parting: f32) -> f32 {
+        let change = max(-parting, given - self.pressed);
+        self.pressed += change;
+        change
+    }
+
     /// The part of a slip that friction takes \[m/s\]: all that it can by what presses, which counts `weight` times.
     pub(super) fn hold(&mut self, slip: Vec3, weight: f32) -> Vec3 {
         let speed = length(slip);
