@@ -16,6 +16,8 @@ use glam::Vec3;
 const SETTLING: u32 = 2;
 /// How often at most a bounce may lead to others in a sub-step.
 const BOUNCES: u32 = 64;
+/// Two that what bears them leaves less than this share of their ways give way as if nothing did.
+const LEAST: f32 = 1e-3;
 /// How often a face is turned to where a particle struck it.
 const TURNS: u32 = 2;
 /// What is slower than this share of the hardest bounce leads to no others.
@@ -31,6 +33,7 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     let (len, h) = (bodies.len(), bodies.substep.seconds());
     kept.pushed[..len].copy_from_slice(bodies.velocity);
     kept.thrown[..len].copy_from_slice(bodies.velocity);
+    kept.borne[..len].fill(Vec3::ZERO);
     kept.lists.hardest = 0.0;
     let [x, v] = bodies.before;
     for (row, drift) in kept.drift[..len].iter_mut().enumerate() {
@@ -252,14 +255,18 @@ impl<'a> Pass<'a> {
         let moved = max(overlap + lag, 0.0) * ((wa + wb) / (wa + wb + self.softness));
         let felt = min(moved * self.rate, closing + self.calm);
         let drift = (self.drift[a] - self.drift[b]).dot(normal);
-        let share = normal * (1.0 / (wa + wb));
-        self.position[a] += share * (moved * wa);
-        self.position[b] -= share * (moved * wb);
+        let [from_a, from_b] = if calm { [normal; 2] } else { self.ways(a, b, normal) };
+        let way = moved / (from_a.dot(normal) * wa + from_b.dot(normal) * wb);
+        self.position[a] += from_a * (way * wa);
+        self.position[b] -= from_b * (way * wb);
         pair.touch.begin(0.0);
         pair.given = 0.0;
-        self.bounce_pair(pair, normal, moved + drift);
+        let driven = |row: usize| self.v0[row] - self.pushed[row];
+        let work = (wa + wb) * way * (driven(a).dot(from_a) - driven(b).dot(from_b));
+        self.bounce_pair(pair, normal, work + (driven(a) - driven(b)).dot(normal) * drift);
         let felt = max(felt - pair.given, 0.0);
         pair.touch.give(felt);
+        let share = normal * (1.0 / (wa + wb));
         self.velocity[a] += share * (felt * wa);
         self.velocity[b] -= share * (felt * wb);
         if self.softness > 0.0 {
@@ -289,7 +296,11 @@ impl<'a> Pass<'a> {
         self.position[row] += face.normal * moved;
         face.touch.begin(0.0);
         face.given = 0.0;
-        self.bounce_face(face, moved + self.drift[row].dot(face.normal));
+        let driven = (self.v0[row] - self.pushed[row]).dot(face.normal);
+        self.bounce_face(face, driven * (moved + self.drift[row].dot(face.normal)));
+        if self.borne[row].dot(self.up) <= face.normal.dot(self.up) {
+            self.borne[row] = face.normal;
+        }
         let felt = max(felt - face.given, 0.0);
         face.touch.give(felt);
         self.velocity[row] += face.normal * felt;
@@ -310,6 +321,24 @@ impl<'a> Pass<'a> {
     fn gap(&self, face: &Face) -> f32 {
         let row = face.row as usize;
         (self.x0[row] + face.velocity * self.h).dot(face.normal) - face.offset - self.radius[row]
+    }
+
+    /// The ways along which the first of two gives way to the other, and that against which the other does: along what bears it, which gives way to nobody.
+    /// Who stands on one that is borne is borne as well.
+    #[inline(never)]
+    fn ways(&mut self, a: usize, b: usize, normal: Vec3) -> [Vec3; 2] {
+        let pressed = [(a, normal), (b, -normal)].map(|(row, way)| max(-self.borne[row].dot(way), 0.0));
+        let ways = [a, b].map(|row| aside(normal, self.borne[row]));
+        for (row, by, normal) in [(a, pressed[1], normal), (b, pressed[0], -normal)] {
+            if self.borne[row].dot(self.up) < by * normal.dot(self.up) {
+                self.borne[row] = normal * by;
+            }
+        }
+        let free = |side: usize| if pressed[side] > 0.0 { ways[side] } else { normal };
+        let ways = [free(0), free(1)];
+        let weight = |side: usize, row: usize| ways[side].dot(normal) * self.inverse_mass[row];
+        let least = LEAST * (self.inverse_mass[a] + self.inverse_mass[b]);
+        if weight(0, a) + weight(1, b) > least { ways } else { [normal; 2] }
     }
 
     /// Moves a particle along the normal of a soft contact to where its velocity leads, and tells how far behind it was \[m\]. A contact answers forces
@@ -496,17 +525,16 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// Lets two bounce that are too close by `depth` on whose way forces have acted \[m\].
+    /// Lets two bounce on whose way forces have done `work`.
     #[inline(always)]
-    fn bounce_pair(&mut self, pair: &mut Pair, normal: Vec3, depth: f32) {
+    fn bounce_pair(&mut self, pair: &mut Pair, normal: Vec3, work: f32) {
         let [a, b] = pair.rows.map(|row| row as usize);
-        let Some([change, given]) = self.bounce(pair.touch.elasticity, depth, &|v| (v[a] - v[b]).dot(normal)) else {
-            return;
-        };
+        let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
+        let [thrown, given] = self.bounce(pair.touch.elasticity, work, &along);
         let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
         let share = normal * (1.0 / (wa + wb));
-        self.thrown[a] += share * (change * wa);
-        self.thrown[b] -= share * (change * wb);
+        self.thrown[a] += share * (thrown * wa);
+        self.thrown[b] -= share * (thrown * wb);
         self.velocity[a] += share * (given * wa);
         self.velocity[b] -= share * (given * wb);
         pair.touch.give(given);
@@ -515,30 +543,33 @@ impl<'a> Pass<'a> {
 
     /// The same against a face.
     #[inline(always)]
-    fn bounce_face(&mut self, face: &mut Face, depth: f32) {
+    fn bounce_face(&mut self, face: &mut Face, work: f32) {
         let (row, normal) = (face.row as usize, face.normal);
         let along = |v: &[Vec3]| (v[row] - face.velocity).dot(normal);
-        let Some([change, given]) = self.bounce(face.touch.elasticity, depth, &along) else { return };
-        self.thrown[row] += normal * change;
+        let [thrown, given] = self.bounce(face.touch.elasticity, work, &along);
+        self.thrown[row] += normal * thrown;
         self.velocity[row] += normal * given;
         face.touch.give(given);
         face.given += given;
     }
 
-    /// By how much the speed changes at which two part that come together: the elastic answer to their approach as they touched, without what forces have
-    /// added in the `depth` since. None where the bounce would be over within a part of the step, but for those that come faster than
-    /// by what drives them: these stop each other, which is no bounce, but others have to know. And how much of that is a bounce's.
+    /// By how much the speed changes at which two part that come together: for bounces alone, and with all else that has been given.
+    ///
+    /// They bounce by the elasticity's share of their approach as they touched, without what forces have added since: their `work` by the mass that counts
+    /// and over the sub-step. It is no bounce if it would be over within a part of the step; those that come faster than by what
+    /// drives them stop each other then, which others have to know. What others have taken of the approach meanwhile is not given back.
     #[inline(always)]
-    fn bounce(&mut self, elasticity: f32, depth: f32, along: &impl Fn(&[Vec3]) -> f32) -> Option<[f32; 2]> {
-        let (approach, pressing) = (along(self.thrown), (along(self.v0) - along(self.pushed)) * self.rate);
-        if !(approach < 0.0) {
-            return None;
+    fn bounce(&mut self, elasticity: f32, work: f32, along: &impl Fn(&[Vec3]) -> f32) -> [f32; 2] {
+        let (parting, now) = (along(self.thrown), along(self.velocity));
+        if !(parting < 0.0) {
+            return [0.0; 2];
         }
-        let bounce = sqrt(max(approach * approach - 2.0 * pressing * depth, 0.0)) * elasticity;
+        let bounce = sqrt(max(parting * parting - 2.0 * self.rate * work, 0.0)) * elasticity;
+        let pressing = (along(self.v0) - along(self.pushed)) * self.rate;
         if bounce > 0.0 && 2.0 * bounce >= RESTING * max(self.long * pressing, self.least) {
             *self.hardest = max(*self.hardest, bounce);
-            return Some([bounce - approach; 2]);
+            return [bounce - parting, max(min(bounce, -now * elasticity) - now, 0.0)];
         }
-        (-approach > self.calm).then_some([-approach, 0.0])
+        [if -parting > self.calm { -parting } else { 0.0 }, 0.0]
     }
 }
