@@ -128,8 +128,8 @@ fn by_position_each_bounce_gives_back_the_share_of_its_elasticity() {
     }
 }
 
-/// What bounces off scenery that curves does so along one normal, that of the plane by which its approach is known: off two it would gain or lose by how much they
-/// differ, by each hit.
+/// What bounces off scenery that curves does so along one normal, that of where it touches it: off two it would gain or lose by how much they differ, by each
+/// hit.
 #[test]
 fn by_position_what_curves_neither_gives_nor_takes() {
     let mut cases = 0;

@@ -32,7 +32,12 @@ pub(super) use touch::{TangentImpulse, Touch, bounce};
 /// elasticity of one a ball keeps its energy however long the sub-steps are (with methods of second order on; those of first order lose some, as on
 /// scenery alone).
 ///
-/// Scenery that curves takes the velocity across it where the ball is after the sub-step, if that does not bounce, so that nothing gains by sliding in a
+/// Within a sub-step bounces lead to each other, one after the other: what falls on a ball that has just met the floor meets one that comes up, and a row of
+/// balls passes a blow on to its end. Each takes no more than it finds, so that what has an elasticity of one keeps its energy and all else never gets
+/// any. A sub-step has room for 64 such rounds; a light ball between two that are ten times as heavy may ask for more, and stops both then. Who meets
+/// faster than rests does is moved aside along what bears it, and not into that.
+///
+/// What strikes scenery that curves does so where it touches it, along the normal there. Such scenery takes the velocity across it where the ball is after the sub-step, if that slides, so that nothing gains by sliding in a
 /// bowl (RATTLE: Andersen, J. Comput. Phys. 52, 1983); an edge that is level with the face beside it is part of that.
 ///
 /// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full

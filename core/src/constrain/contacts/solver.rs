@@ -16,8 +16,9 @@ use glam::Vec3;
 const SETTLING: u32 = 2;
 /// How often at most a bounce may lead to others in a sub-step.
 const BOUNCES: u32 = 64;
-/// Two that what bears them leaves less than this share of their ways give way as if nothing did.
-const LEAST: f32 = 1e-3;
+/// The share of its weight that a pair keeps at least that something bears: else the light one gives way all the same, as a heavy one would be
+/// raised by more than it can pay for.
+const LEAST: f32 = 0.1;
 /// How often a face is turned to where a particle struck it.
 const TURNS: u32 = 2;
 /// What is slower than this share of the hardest bounce leads to no others.
@@ -327,18 +328,17 @@ impl<'a> Pass<'a> {
     /// Who stands on one that is borne is borne as well.
     #[inline(never)]
     fn ways(&mut self, a: usize, b: usize, normal: Vec3) -> [Vec3; 2] {
-        let pressed = [(a, normal), (b, -normal)].map(|(row, way)| max(-self.borne[row].dot(way), 0.0));
-        let ways = [a, b].map(|row| aside(normal, self.borne[row]));
-        for (row, by, normal) in [(a, pressed[1], normal), (b, pressed[0], -normal)] {
-            if self.borne[row].dot(self.up) < by * normal.dot(self.up) {
-                self.borne[row] = normal * by;
+        let sides = [(a, normal), (b, -normal)];
+        let borne = sides.map(|(row, way)| max(-self.borne[row].dot(way), 0.0));
+        let ways = [0, 1].map(|i| if borne[i] > 0.0 { aside(normal, self.borne[sides[i].0]) } else { normal });
+        for ((row, way), by) in sides.into_iter().zip([borne[1], borne[0]]) {
+            if self.borne[row].dot(self.up) < by * way.dot(self.up) {
+                self.borne[row] = way * by;
             }
         }
-        let free = |side: usize| if pressed[side] > 0.0 { ways[side] } else { normal };
-        let ways = [free(0), free(1)];
-        let weight = |side: usize, row: usize| ways[side].dot(normal) * self.inverse_mass[row];
-        let least = LEAST * (self.inverse_mass[a] + self.inverse_mass[b]);
-        if weight(0, a) + weight(1, b) > least { ways } else { [normal; 2] }
+        let weight = |i: usize| ways[i].dot(normal) * self.inverse_mass[sides[i].0];
+        let whole = self.inverse_mass[a] + self.inverse_mass[b];
+        if weight(0) + weight(1) > LEAST * whole { ways } else { [normal; 2] }
     }
 
     /// Moves a particle along the normal of a soft contact to where its velocity leads, and tells how far behind it was \[m\]. A contact answers forces
