@@ -36,7 +36,7 @@ const HINGES: usize = 13;
 /// Where a corner of the die is, and one of the jelly.
 const THROWN: [Vec3; 2] = [Vec3::new(0.4, 0.5, 0.5), Vec3::new(0.3, 0.9, 0.45)];
 const PARTICLES: usize = LOOSE + WOVEN;
-const COLUMNS: usize = 72;
+const COLUMNS: usize = 73;
 const KEPT: usize = 28;
 
 /// Everything that they need, none of it on the stack.

@@ -23,10 +23,10 @@ const LEVEL: f32 = 4.0;
 const ALIKE: f32 = 0.5;
 /// Contacts with the scenery around a particle.
 type Around = heapless::Vec<Contact, 16>;
-/// The words kept through the step: for each particle two velocities, a drift, two loads, pairs and faces, and how long the
+/// The words kept through the step: for each particle two velocities, a drift, two loads, a round, pairs and faces, and how long the
 /// lists are.
 pub(super) const KEPT: Words =
-    Words { per_row: 5 * 3 + PAIR_WORDS + FACES * (size_of::<Face>() / 4), fixed: size_of::<Listed>() / 4 };
+    Words { per_row: 5 * 3 + 1 + PAIR_WORDS + FACES * (size_of::<Face>() / 4), fixed: size_of::<Listed>() / 4 };
 const PAIR_WORDS: usize = (PAIRS * size_of::<Pair>()).div_ceil(size_of::<Vec3>()) * 3;
 
 /// Two that may touch in the step, and what they do to each other then.
@@ -74,7 +74,7 @@ pub(super) struct Listed {
     pub(super) sorted: u32,
     /// 1 if any of them has friction.
     pub(super) rough: u32,
-    /// The fastest bounce of the sub-step \[m/s\].
+    /// The fastest bounce of the sub-step so far \[m/s\].
     pub(super) hardest: f32,
     /// The mean change of all velocities in the sub-step \[m/s\].
     pub(super) driven: Vec3,
@@ -87,6 +87,8 @@ pub(super) struct Kept<'a> {
     /// What bounces alone, one after the other, make of these.
     pub(super) thrown: &'a mut [Vec3],
     pub(super) drift: &'a mut [Vec3],
+    /// The round of bounces in which each was thrown last; none: zero.
+    pub(super) round: &'a mut [u32],
     /// The pushes that carry each particle, summed, and what it should carry beyond them.
     pub(super) borne: &'a mut [Vec3],
     pub(super) owed: &'a mut [Vec3],
@@ -100,12 +102,13 @@ impl<'a> Kept<'a> {
     pub(super) fn of(mut memory: &'a mut [u32], capacity: usize) -> Option<Self> {
         let lists = bytemuck::cast_slice_mut(take(&mut memory, KEPT.fixed)).first_mut()?;
         let [pushed, thrown, drift, borne, owed] = [(); 5].map(|()| take_vectors(&mut memory, capacity));
+        let round = take(&mut memory, capacity);
         let pairs = take(&mut memory, PAIR_WORDS * capacity);
         let whole = pairs.len() - pairs.len() % (size_of::<Pair>() / 4);
         let pairs = bytemuck::cast_slice_mut(&mut pairs[..whole]);
         let faces = memory.len() - memory.len() % (size_of::<Face>() / 4);
         let faces = bytemuck::cast_slice_mut(&mut memory[..faces]);
-        Some(Self { pushed, thrown, drift, borne, owed, pairs, faces, lists })
+        Some(Self { pushed, thrown, round, drift, borne, owed, pairs, faces, lists })
     }
 }
 

@@ -22,7 +22,7 @@ const LEAST: f32 = 0.1;
 /// How often a face is turned to where a particle struck it.
 const TURNS: u32 = 2;
 /// What is slower than this share of the hardest bounce leads to no others.
-const FAINT: f32 = 1e-3;
+const FAINT: f32 = 0.01;
 /// How much lighter the lower of two that rest on each other counts for each other, as a share.
 const SUPPORT: f32 = 0.6;
 /// The number of roundings that each particle's velocity may have gone through. Gravity that adds less than that in a sub-step, in one of a hundredth of a
@@ -35,6 +35,7 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     kept.pushed[..len].copy_from_slice(bodies.velocity);
     kept.thrown[..len].copy_from_slice(bodies.velocity);
     kept.borne[..len].fill(Vec3::ZERO);
+    kept.round[..len].fill(0);
     kept.lists.hardest = 0.0;
     let [x, v] = bodies.before;
     for (row, drift) in kept.drift[..len].iter_mut().enumerate() {
@@ -150,6 +151,9 @@ struct Pass<'a> {
     pushed: &'a [Vec3],
     /// What bounces alone, one after the other, make of these.
     thrown: &'a mut [Vec3],
+    /// The round of bounces in which each was thrown last, and the one that goes on.
+    rounds: &'a mut [u32],
+    round: u32,
     /// How far positions are from where the mean of the velocities before and now leads \[m\]: by half of what forces do in
     /// the sub-step with methods of first order, hardly with others. Contacts take out what lies in their way.
     drift: &'a mut [Vec3],
@@ -200,6 +204,8 @@ impl<'a> Pass<'a> {
             v0: bodies.before[1],
             pushed: &kept.pushed[..len],
             thrown: &mut kept.thrown[..len],
+            rounds: &mut kept.round[..len],
+            round: 1,
             drift: &mut kept.drift[..len],
             borne: &mut kept.borne[..len],
             owed: &mut kept.owed[..len],
@@ -512,17 +518,26 @@ impl<'a> Pass<'a> {
     /// Lets what bounces have thrown against others bounce on these, until nothing does any more or often enough.
     fn bounce_on(&mut self, pairs: &mut [Pair], faces: &mut [Face]) {
         self.least = max(self.calm, FAINT * *self.hardest);
-        for _ in 0..BOUNCES {
-            if *self.hardest == 0.0 {
-                return;
+        while *self.hardest > 0.0 && self.round <= BOUNCES {
+            (*self.hardest, self.round) = (0.0, self.round + 1);
+            for face in faces.iter_mut().filter(|face| face.touch.is_on()) {
+                if self.is_thrown(face.row) {
+                    self.bounce_face(face, 0.0);
+                }
             }
-            *self.hardest = 0.0;
-            faces.iter_mut().filter(|face| face.touch.is_on()).for_each(|face| self.bounce_face(face, 0.0));
             for pair in pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()) {
-                let (_, normal) = self.ends(pair);
-                self.bounce_pair(pair, normal, 0.0);
+                if pair.rows.iter().any(|&row| self.is_thrown(row)) {
+                    let (_, normal) = self.ends(pair);
+                    self.bounce_pair(pair, normal, 0.0);
+                }
             }
         }
+    }
+
+    /// Tells whether a particle has been thrown in this round of bounces or in the one before.
+    #[inline(always)]
+    fn is_thrown(&self, row: u32) -> bool {
+        self.rounds[row as usize] + 1 >= self.round
     }
 
     /// Lets two bounce on whose way forces have done `work`.
@@ -531,6 +546,10 @@ impl<'a> Pass<'a> {
         let [a, b] = pair.rows.map(|row| row as usize);
         let along = |v: &[Vec3]| (v[a] - v[b]).dot(normal);
         let [thrown, given] = self.bounce(pair.touch.elasticity, work, &along);
+        if thrown == 0.0 {
+            return;
+        }
+        (self.rounds[a], self.rounds[b]) = (self.round, self.round);
         let (wa, wb) = (self.inverse_mass[a], self.inverse_mass[b]);
         let share = normal * (1.0 / (wa + wb));
         self.thrown[a] += share * (thrown * wa);
@@ -547,6 +566,10 @@ impl<'a> Pass<'a> {
         let (row, normal) = (face.row as usize, face.normal);
         let along = |v: &[Vec3]| (v[row] - face.velocity).dot(normal);
         let [thrown, given] = self.bounce(face.touch.elasticity, work, &along);
+        if thrown == 0.0 {
+            return;
+        }
+        self.rounds[row] = self.round;
         self.thrown[row] += normal * thrown;
         self.velocity[row] += normal * given;
         face.touch.give(given);
