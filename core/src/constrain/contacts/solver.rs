@@ -267,6 +267,12 @@ impl<'a> Pass<'a> {
         self.bounce_pair(pair, normal, work + (driven(a) - driven(b)).dot(normal) * drift);
         let felt = max(felt - pair.given, 0.0);
         pair.touch.give(felt);
+        // Who is stopped is so by what bears the other as well, unless that comes up.
+        let stands = |row: usize| self.thrown[row].dot(self.borne[row]) <= self.calm;
+        if pair.given == 0.0 && !calm && stands(a) && stands(b) {
+            pair.lean = (from_a - from_b).dot(normal);
+        }
+        let (wa, wb) = self.weights(pair);
         let share = normal * (1.0 / (wa + wb));
         self.velocity[a] += share * (felt * wa);
         self.velocity[b] -= share * (felt * wb);
