@@ -88,6 +88,11 @@ impl Touch {
         self.pressed += more;
     }
 
+    /// How fast two have come together that bounces have `given` so much \[m/s\]: that and the elasticity's share of it.
+    pub(super) fn thrown(&self, given: f32) -> f32 {
+        given / (1.0 + self.elasticity)
+    }
+
     /// How the speed at which they part has to change for them not to come together. What bounces have `given` of it stays.
     pub(super) fn part(&mut self, given: f32, parting: f32) -> f32 {
         let change = max(-parting, given - self.pressed);
