@@ -267,7 +267,8 @@ impl<'a> Pass<'a> {
         if !(overlap > 0.0 || overlap > -slack && closing > 0.0) {
             return;
         }
-        let calm = (self.thrown[a] - self.thrown[b]).dot(normal).abs() <= self.calm;
+        let parting = (self.thrown[a] - self.thrown[b]).dot(normal);
+        let calm = parting.abs() <= self.calm;
         pair.lean = if calm { SUPPORT * self.hardness(a, b) * normal.dot(self.up) } else { 0.0 };
         let (wa, wb) = self.weights(pair);
         let lag = self.catch_up(a, normal) - self.catch_up(b, normal);
@@ -280,9 +281,11 @@ impl<'a> Pass<'a> {
         self.position[b] -= from_b * (way * wb);
         pair.touch.begin(0.0);
         pair.given = 0.0;
-        let driven = |row: usize| self.v0[row] - self.pushed[row];
-        let work = (wa + wb) * way * (driven(a).dot(from_a) - driven(b).dot(from_b));
-        self.bounce_pair(pair, normal, work + (driven(a) - driven(b)).dot(normal) * drift);
+        if parting < 0.0 {
+            let driven = |row: usize| self.v0[row] - self.pushed[row];
+            let work = (wa + wb) * way * (driven(a).dot(from_a) - driven(b).dot(from_b));
+            self.bounce_pair(pair, normal, work + (driven(a) - driven(b)).dot(normal) * drift);
+        }
         let felt = max(felt - pair.given, 0.0);
         pair.touch.give(felt);
         // Who is stopped is so by what bears the other as well, unless that comes up.

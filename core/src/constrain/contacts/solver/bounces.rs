@@ -100,15 +100,18 @@ impl Pass<'_> {
     /// drives them stop each other then, which others have to know. What others have taken of the approach meanwhile is not given back.
     #[inline(always)]
     fn bounce(&mut self, elasticity: f32, work: f32, along: &impl Fn(&[Vec3]) -> f32) -> [f32; 2] {
-        let (parting, now) = (along(self.thrown), along(self.velocity));
+        let parting = along(self.thrown);
         if !(parting < 0.0) {
             return [0.0; 2];
         }
-        let bounce = sqrt(max(parting * parting - 2.0 * self.rate * work, 0.0)) * elasticity;
-        let pressing = (along(self.v0) - along(self.pushed)) * self.rate;
-        if bounce > 0.0 && 2.0 * bounce >= RESTING * max(self.long * pressing, self.least) {
-            *self.hardest = max(*self.hardest, bounce);
-            return [bounce - parting, max(min(bounce, -now * elasticity) - now, 0.0)];
+        if elasticity > 0.0 {
+            let bounce = sqrt(max(parting * parting - 2.0 * self.rate * work, 0.0)) * elasticity;
+            let pressing = (along(self.v0) - along(self.pushed)) * self.rate;
+            if bounce > 0.0 && 2.0 * bounce >= RESTING * max(self.long * pressing, self.least) {
+                let now = along(self.velocity);
+                *self.hardest = max(*self.hardest, bounce);
+                return [bounce - parting, max(min(bounce, -now * elasticity) - now, 0.0)];
+            }
         }
         [if -parting > self.calm { -parting } else { 0.0 }, 0.0]
     }
