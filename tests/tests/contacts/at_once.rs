@@ -7,6 +7,8 @@ use pointmass::{Contacts, Gravity, Heap, Id, Impact, Method, Observer, Particle,
 use pointmass_tests::{f64s, is_run, started};
 
 const RADIUS: f32 = 0.1;
+const FLOOR: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+const GRAVITY: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.8, 0.0) };
 const METHODS: [Method; 4] = [Method::Midpoint, Method::Verlet, Method::Rk4, Method::Embedded];
 
 /// Energy with `gravity` along y [J].
@@ -19,11 +21,23 @@ fn energy(system: &System<Heap>, gravity: f64) -> f64 {
     .sum()
 }
 
+/// Balls over a plane, on which they fall.
+fn over_a_floor(start: &[Particle], method: Method, substeps: u32) -> Scene<'_> {
+    Scene {
+        start,
+        forces: &GRAVITY,
+        constraints: &Contacts::HARD,
+        integrator: method.integrator(),
+        colliders: &FLOOR,
+        substeps,
+        ..Scene::EMPTY
+    }
+}
+
 /// Balls above each other that fall on a plane meet each other while the lowest is at the plane, sooner or later within the same sub-step.
 #[test]
 fn a_column_that_falls_keeps_its_energy() {
     let mut cases = 0;
-    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     for gaps in [&[0.3, 0.2][..], &[0.1, 0.02], &[0.03, 0.5, 0.31], &[0.2, 0.004, 0.1], &[0.6, 0.3, 0.07, 0.11, 0.4]] {
         for masses in [[1.0; 5], [1.0, 3.0, 0.5, 2.0, 0.8], [8.0, 4.0, 2.0, 1.0, 0.5], [0.5, 1.0, 0.4, 1.0, 2.0]] {
             for (rate, substeps) in [(60.0, 1), (60.0, 4), (60.0, 12), (144.0, 2)] {
@@ -41,15 +55,7 @@ fn a_column_that_falls_keeps_its_energy() {
                             Particle { position, mass, radius: RADIUS, elasticity: 1.0, ..Particle::REST }
                         })
                         .collect();
-                    let scene = Scene {
-                        start: &start,
-                        forces: &Gravity { acceleration: Vec3::NEG_Y * 9.8 },
-                        constraints: &Contacts::HARD,
-                        integrator: method.integrator(),
-                        colliders: &floor,
-                        substeps,
-                        ..Scene::EMPTY
-                    };
+                    let scene = over_a_floor(&start, method, substeps);
                     let mut system = started(&scene, start.len(), 1);
                     let before = energy(&system, 9.8);
                     let case = format!("{gaps:?}, {masses:?}, {rate}/{substeps}, {method}");
@@ -65,7 +71,7 @@ fn a_column_that_falls_keeps_its_energy() {
     }
 }
 
-/// Who has touched whom, and how fast the two came together.
+/// All touches: who has touched whom, and how fast the two came together.
 #[derive(Default)]
 struct Told(Vec<(Id, Id, f32)>);
 
@@ -122,11 +128,10 @@ fn a_cradle_passes_on_what_comes() {
     }
 }
 
-/// What loses some at each bounce never has more than before, and comes to rest.
+/// Balls that lose some at each bounce never have more than before, and come to rest.
 #[test]
 fn a_column_that_loses_some_comes_to_rest() {
     let mut cases = 0;
-    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     for elasticity in [0.0, 0.3, 0.6] {
         for (rate, substeps) in [(24.0, 12), (60.0, 4), (60.0, 12)] {
             for method in METHODS {
@@ -141,15 +146,7 @@ fn a_column_that_loses_some_comes_to_rest() {
                         elasticity,
                         ..Particle::REST
                     });
-                    let scene = Scene {
-                        start: &start,
-                        forces: &Gravity { acceleration: Vec3::NEG_Y * 9.8 },
-                        constraints: &Contacts::HARD,
-                        integrator: method.integrator(),
-                        colliders: &floor,
-                        substeps,
-                        ..Scene::EMPTY
-                    };
+                    let scene = over_a_floor(&start, method, substeps);
                     let mut system = started(&scene, 3, 1);
                     let mut least = energy(&system, 9.8);
                     let slack = 0.01 * least;

@@ -84,7 +84,7 @@ pub(super) struct Listed {
 pub(super) struct Kept<'a> {
     /// Velocities when the method has moved all.
     pub(super) pushed: &'a mut [Vec3],
-    /// What bounces alone, one after the other, make of these.
+    /// Velocities that bounces alone, one after the other, make of these.
     pub(super) thrown: &'a mut [Vec3],
     pub(super) drift: &'a mut [Vec3],
     /// The round of bounces in which each was thrown last; none: zero.

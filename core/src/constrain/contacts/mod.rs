@@ -37,7 +37,7 @@ pub(super) use touch::{TangentImpulse, Touch, bounce};
 /// some thousandths in crowds and long sub-steps, by the moving apart. A sub-step has room for 64 such rounds; a light ball between two that are ten times as
 /// heavy may ask for more, and stops both then. Observers are told of what a contact passes on within a sub-step as of one blow. Who meets faster than rests does is moved aside along what bears it, and not into that.
 ///
-/// What strikes scenery that curves does so where it touches it, along the normal there. Such scenery takes the velocity across it where the ball is after the
+/// Scenery that curves is struck where a particle touches it, along the normal there. It takes the velocity across it where the ball is after the
 /// sub-step, if that slides, so that nothing gains by sliding in a bowl (RATTLE: Andersen, J. Comput. Phys. 52, 1983); an edge that is level with
 /// the face beside it is part of that.
 ///

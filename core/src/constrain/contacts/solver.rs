@@ -161,7 +161,7 @@ struct Pass<'a> {
     v0: &'a [Vec3],
     /// Velocities as the integrator left them.
     pushed: &'a [Vec3],
-    /// What bounces alone, one after the other, make of these.
+    /// Velocities that bounces alone, one after the other, make of these.
     thrown: &'a mut [Vec3],
     /// The round of bounces in which each was thrown last, and the one that goes on.
     rounds: &'a mut [u32],
@@ -195,7 +195,7 @@ struct Pass<'a> {
     fast: bool,
     /// The fastest bounce of the sub-step so far \[m/s\].
     hardest: &'a mut f32,
-    /// What slower ones than that do after others are no bounces \[m/s\].
+    /// The speed below which what others have thrown does not bounce on \[m/s\].
     least: f32,
 }
 

@@ -11,12 +11,12 @@ const BOUNCES: u32 = 64;
 /// The share of its weight that a pair keeps at least that something bears: else the light one gives way all the same, as a heavy one would be
 /// raised by more than it can pay for.
 const LEAST: f32 = 0.1;
-/// What is slower than this share of the hardest bounce leads to no others.
+/// The share of the hardest bounce below which none leads to others.
 const FAINT: f32 = 0.01;
 
 impl Pass<'_> {
     /// The ways along which the first of two gives way to the other, and that against which the other does: along what bears it, which gives way to nobody.
-    /// Who stands on one that is borne is borne as well.
+    /// A particle that stands on one that is borne is borne as well.
     #[inline(never)]
     pub(super) fn ways(&mut self, a: usize, b: usize, normal: Vec3) -> [Vec3; 2] {
         let sides = [(a, normal), (b, -normal)];
