@@ -10,8 +10,9 @@ pub mod surfaces;
 
 use core::ops::Range;
 use pointmass::force::{Perturbation, State};
+use pointmass::index::Structure;
 use pointmass::shape::{Line, Mesh, Shape};
-use pointmass::{Force, Heap, Integrator, Particle, Scene, Size, System, Time, Vec3};
+use pointmass::{Force, Heap, Integrator, Method, Particle, Scene, Size, System, Time, Vec3};
 
 /// Standard gravity \[m/s²\].
 pub const G: f64 = 9.80665;
@@ -34,9 +35,37 @@ pub const fn often(n: usize) -> usize {
 /// Tells whether to run the next case of many: each of them, in debug builds every sixth, each time another one of an innermost loop of as many.
 #[must_use]
 pub const fn is_run(cases: &mut usize) -> bool {
+    is_one_of(6, cases)
+}
+
+/// The same where cases are fewer: in debug builds it is every third.
+#[must_use]
+pub const fn is_third(cases: &mut usize) -> bool {
+    is_one_of(3, cases)
+}
+
+const fn is_one_of(n: usize, cases: &mut usize) -> bool {
     let case = *cases;
     *cases += 1;
-    !cfg!(debug_assertions) || (case + case / 6).is_multiple_of(6)
+    !cfg!(debug_assertions) || (case + case / n).is_multiple_of(n)
+}
+
+/// How far it is from a case to the next that runs: `n` in debug builds, otherwise one.
+#[must_use]
+pub const fn every(n: usize) -> usize {
+    if cfg!(debug_assertions) { n } else { 1 }
+}
+
+/// All methods; in debug builds every third, and others in the next round.
+pub fn methods(round: usize) -> impl Iterator<Item = Method> {
+    Method::ALL.iter().copied().skip(round % every(3)).step_by(every(3))
+}
+
+/// The structures to try in the `i`th of some cases: all in two of them, in debug builds one in each.
+#[must_use]
+pub fn structures(i: usize) -> &'static [Structure] {
+    let all = Structure::ALL;
+    if cfg!(debug_assertions) { &all[i % all.len()..=i % all.len()] } else { &all[..if i < 2 { all.len() } else { 1 }] }
 }
 
 /// A system on the heap that has started `scene`, with room for `capacity` particles.

@@ -4,7 +4,7 @@ use pointmass::constrain::{HullBuf, RigidBodies, RigidBox};
 use pointmass::force::Friction;
 use pointmass::shape::{Collider, Cuboid, HeightField, MeshBuf, Plane, Segment, Sphere};
 use pointmass::{ContactMaterial, Force, Gravity, Heap, Measures, Method, Particle, Scene, System, Time, Vec3};
-use pointmass_tests::{Random, often, started};
+use pointmass_tests::{Random, is_third, often, started};
 
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
 
@@ -68,8 +68,11 @@ fn no_blow_gives_energy() {
     let points: Vec<_> = (0..30).map(|_| random.direction() * random.between(0.09, 0.12)).collect();
     let stone = [HullBuf::of(&points).expect("a stone")];
     let heights: Vec<f32> = (0..81).map(|_| random.between(0.0, 0.25)).collect();
-    let mut failures = vec![];
+    let (mut cases, mut failures) = (0, vec![]);
     for round in 0..often(600) {
+        if !is_third(&mut cases) {
+            continue;
+        }
         let rooms = rooms(&heights);
         let (at, room) = &rooms[round % rooms.len()];
         let elasticity = [0.5, 0.9, 1.0][random.word() as usize % 3];

@@ -8,7 +8,7 @@ use pointmass::{
     Cause, ClothSprings, Constraint, ContactMaterial, Emitter, Force, Gravity, Heap, LifeEvent, Measures, Method,
     Observer, Particle, Report, Scene, Sheet, Spring, SpringParams, System, Time, Vec3,
 };
-use pointmass_tests::{Random, often, started};
+use pointmass_tests::{Random, is_third, methods, often, started};
 
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.8, 0.0) };
 
@@ -173,12 +173,12 @@ fn gain(random: &mut Random, thing: &Thing, scale: f32, heights: &[f32]) -> Opti
 fn gains(seed: u64, rounds: usize, among: impl Fn(&str) -> bool) -> Vec<String> {
     let mut random = Random::new(seed);
     let heights: Vec<f32> = (0..81).map(|_| random.between(0.0, 0.2)).collect();
-    let mut failures = vec![];
+    let (mut cases, mut failures) = (0, vec![]);
     for round in 0..rounds {
         let scale = [1.0, 0.05, 20.0][round % 3];
         let high: Vec<f32> = heights.iter().map(|height| height * scale).collect();
         let things = things(&mut random, scale);
-        for thing in things.iter().filter(|thing| among(thing.name)) {
+        for thing in things.iter().filter(|thing| among(thing.name) && is_third(&mut cases)) {
             failures.extend(gain(&mut random, thing, scale, &high));
         }
     }
@@ -269,8 +269,8 @@ fn so_many_sub_steps_are_as_many_steps() {
     let mut random = Random::new(78);
     let heights = [0.1; 81];
     for thing in things(&mut random, 1.0).iter().filter(|thing| thing.bond.is_empty()) {
-        for (at, ground) in &grounds(1.0, &heights) {
-            for &method in Method::ALL {
+        for (i, (at, ground)) in grounds(1.0, &heights).iter().enumerate() {
+            for method in methods(i) {
                 let substeps = [2, 4, 8, 32][random.word() as usize % 4];
                 let scene = Scene {
                     start: &thing.start,

@@ -2,7 +2,7 @@
 
 use pointmass::scene::{Model, SceneFile};
 use pointmass::{Method, Scene};
-use pointmass_tests::{run, started};
+use pointmass_tests::{is_third, run, started};
 
 fn model(text: &str) -> Result<Model, String> {
     let file = SceneFile::from_json("it.json", text).map_err(|error| error.to_string())?;
@@ -12,10 +12,13 @@ fn model(text: &str) -> Result<Model, String> {
 /// A sheet that hangs by an edge is longer by so many percent, the mean of its lower edge, however many cells it has.
 #[test]
 fn sheets_stretch_by_their_percent_however_fine_they_are() {
-    let percent = [0.5, 6.0];
+    let (percent, mut cases) = ([0.5, 6.0], 0);
     for (number, cells) in [[1u32, 1u32], [3, 2], [8, 8], [5, 16]].into_iter().enumerate() {
         for along in 0..2 {
             for scale in [0.3, 3.0f32] {
+                if !is_third(&mut cases) {
+                    continue;
+                }
                 let count = (cells[0] + 1) * (cells[1] + 1);
                 let held = (0..count).filter(|i| [i % (cells[0] + 1), i / (cells[0] + 1)][along] == 0);
                 let (down, wide) = (format!("[0, -{scale}, 0]"), format!("[{}, 0, 0]", 0.7 * scale));

@@ -3,7 +3,7 @@
 use pointmass::force::Friction;
 use pointmass::shape::Capsule;
 use pointmass::{ContactMaterial, Gravity, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, started};
+use pointmass_tests::{Random, is_third, started};
 use std::f32::consts::PI;
 
 const G: f32 = 9.81;
@@ -110,7 +110,7 @@ impl Peg {
 /// Loads move as capstan's law has it; no energy comes of it, and the rope neither stretches nor gets into the peg.
 #[test]
 fn loads_over_a_peg_go_as_capstans_law_has_it() {
-    let mut random = Random::new(8);
+    let (mut random, mut cases) = (Random::new(8), 0);
     let mut methods = [Method::Symplectic, Method::Implicit].into_iter().cycle();
     for (friction, loads) in [(0.0, [1.0, 2.0]), (0.0, [10.0, 20.0]), (0.2, [1.0, 3.0]), (0.1, [10.0, 20.0])] {
         for substeps in [4, 20, 60] {
@@ -118,6 +118,9 @@ fn loads_over_a_peg_go_as_capstans_law_has_it() {
             let axis = down.cross(random.direction()).normalize();
             let peg = Peg { down, axis, friction, loads };
             let method = methods.next().expect("there is always a next one");
+            if !is_third(&mut cases) {
+                continue;
+            }
             let (frames, t) = (24, 0.4f32);
             let Seen { moved, gained, longer, nearest } = peg.run(method, substeps, frames);
             let should = 0.5 * peg.acceleration() * t * t;

@@ -1,7 +1,7 @@
 //! Ropes that hang: how they swing and how they sag, against closed forms.
 
 use pointmass::{Drag, Gravity, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, is_run, run, started};
+use pointmass_tests::{Random, f64s, gap, is_run, is_third, run, started};
 
 const G: f64 = 9.81;
 
@@ -157,6 +157,7 @@ fn ropes_swing_in_their_time() {
     // Its masses are at the lower ends of links: half a link's more than the rope has.
     assert!((bare.mode().0 / continuous - 1.0).abs() < 2e-3, "{}", bare.mode().0 / continuous);
     let (mut random, mut swung, mut cases, mut failures) = (Random::new(1), 0, 0, vec![]);
+    let swings = if cfg!(debug_assertions) { 1 } else { 3 };
     let mut methods = [Method::Symplectic, Method::Verlet, Method::Rk4, Method::Midpoint].into_iter().cycle();
     for length in [0.3, 1.0, 5.0] {
         for links in [1, 2, 5, 12, 30] {
@@ -173,7 +174,7 @@ fn ropes_swing_in_their_time() {
                         let angles: Vec<f64> =
                             (0..links).map(|i| (0.03 * (far(i + 1) - far(i)) * links as f64).asin()).collect();
                         let method = methods.next().expect("there is always a next one");
-                        let period = hung.period(&angles, &Pose::any(&mut random), method, substeps, 3);
+                        let period = hung.period(&angles, &Pose::any(&mut random), method, substeps, swings);
                         let off = period * omega / core::f64::consts::TAU - 1.0;
                         swung += 1;
                         // Where the most of paces are too few, links are heavier meanwhile.
@@ -282,10 +283,12 @@ fn ropes_between_hooks_hang_in_catenaries() {
     ]
     .into_iter()
     .cycle();
+    // With all checks the finest take long.
+    let all = if cfg!(debug_assertions) { &[48usize, 24][..] } else { &[24, 48, 96] };
     for (span, rise, length) in [(1.0f64, 0.0f64, 1.2f64), (1.0, 0.5, 2.0), (3.0, -1.0, 3.4), (0.2, 0.0, 0.6)] {
-        for links in [24usize, 48, 96] {
+        for &links in all {
             let (substeps, method, tether) = ways.next().expect("there is always a next one");
-            if !is_run(&mut cases) {
+            if !is_third(&mut cases) {
                 continue;
             }
             let pose = Pose::any(&mut random);
@@ -310,7 +313,7 @@ fn ropes_between_hooks_hang_in_catenaries() {
             let parts = Scene { start: &start, forces: &forces, constraints: &rope, ..Scene::EMPTY };
             let scene = Scene { substeps, integrator: method.integrator(), ..parts };
             let mut system = started(&scene, start.len(), 0);
-            run(&mut system, &scene, 1.0 / 60.0, 1200);
+            run(&mut system, &scene, 1.0 / 60.0, if cfg!(debug_assertions) { 800 } else { 1200 });
             let x = system.particles().position;
             let name = format!("{span} m, {rise} m, {length} m of {links}, {method} in {substeps}");
             // The catenary's parameter by halving: √(L² − v²) = 2 a sinh(s / 2a).

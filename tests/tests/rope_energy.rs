@@ -1,7 +1,7 @@
 //! Ropes that nothing holds gain no energy and keep their angular momentum, soft or rigid; nor do parts of them gain any.
 
 use pointmass::{Gravity, Id, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, often, run, started};
+use pointmass_tests::{Random, f64s, gap, is_third, often, run, started};
 
 /// A rope as it begins: as it lies it is at rest.
 struct Flying {
@@ -124,7 +124,7 @@ fn coarse(like: Like, flying: &Flying, sum: u64) -> [f64; 2] {
 }
 
 fn gains_nothing(frames: u64, all: &[usize]) {
-    let (mut random, mut failures) = (Random::new(5), vec![]);
+    let (mut random, mut cases, mut failures) = (Random::new(5), 0, vec![]);
     let mut methods =
         [Method::Symplectic, Method::Verlet, Method::Rk4, Method::Midpoint, Method::Euler].into_iter().cycle();
     let forms = [
@@ -141,6 +141,9 @@ fn gains_nothing(frames: u64, all: &[usize]) {
                     let like = Like { links, compliance, closed, tether, uneven, far, fast: 1.0 };
                     let flying = flying(like, &mut random);
                     let method = methods.next().expect("there is always a next one");
+                    if !is_third(&mut cases) {
+                        continue;
+                    }
                     let [grown, lost] = follow(&flying, substeps, method, frames);
                     let [grows, turns] = coarse(like, &flying, frames * u64::from(substeps));
                     if !(grown < 1e-5 + grows && lost < 1e-4 + turns) {

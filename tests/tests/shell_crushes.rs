@@ -6,7 +6,7 @@ use pointmass::material::ContactMaterial;
 use pointmass::motion::Motion;
 use pointmass::shape::{Aabb, Collider, Moving, Plane};
 use pointmass::{Gravity, Method, Particle, Scene, Sheet, Time, Vec3};
-use pointmass_tests::{Random, config, often, started};
+use pointmass_tests::{Random, config, every, is_third, often, started};
 use proptest::prelude::*;
 use proptest::sample::select;
 
@@ -333,10 +333,14 @@ fn any_crush() -> impl Strategy<Value = Crush> {
 #[test]
 fn what_a_wall_crushes_does_not_explode() {
     // A sheet that slides into a wall so flat that it cannot buckle, and one that is pushed along a floor.
+    let mut cases = 0;
     for (by, bending, substeps) in
         [(By::Wall, 1e-4, 10), (By::Wall, 0.0, 10), (By::Plates, 1e-4, 10), (By::Corner, 1e-4, 3)]
     {
         for (stretch, speed) in [(50.0, 3.0), (500.0, 8.0)] {
+            if !is_third(&mut cases) {
+                continue;
+            }
             let crush = Crush {
                 by,
                 cells: 12,
@@ -387,7 +391,7 @@ fn slow_crushes_in_few_sub_steps_give_no_energy() {
 #[test]
 fn smooth_floors_brake_nobody() {
     let mut random = Random::new(8);
-    for i in 0..often(96).max(24) {
+    for i in (0..96).step_by(every(11)) {
         let crush = Crush {
             by: [By::Slope, By::Slide, By::Slope][i % 3],
             cells: 4 + random.word() as u32 % 10,

@@ -3,7 +3,7 @@
 use pointmass::constrain::{Hinge, Shell, ShellParams, mesh_hinges};
 use pointmass::{Constraint, Effort, Gravity, Measures, Method, Particle, Report, Scene, Sheet, Time, Vec3};
 use pointmass_tests::points::shuffle;
-use pointmass_tests::{Random, gap, icosahedron, often, started};
+use pointmass_tests::{Random, every, gap, icosahedron, often, started};
 
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
 
@@ -349,8 +349,9 @@ fn hung(mesh: &Mesh, params: ShellParams, substeps: u32, extra: usize) -> (Vec<V
 #[test]
 fn meshes_of_all_kinds_are_solved_in_few_iterations() {
     let mut random = Random::new(4711);
-    for (name, mesh) in of_all_kinds(&mut random) {
-        for (stretch, bending, substeps) in [(100.0, 1e-6, 6), (500.0, 1e-5, 3)] {
+    for (i, (name, mesh)) in of_all_kinds(&mut random).into_iter().enumerate() {
+        let ways = [(100.0, 1e-6, 6), (500.0, 1e-5, 3)];
+        for (stretch, bending, substeps) in ways.into_iter().skip(i % every(2)).step_by(every(2)) {
             let params = params(stretch, bending);
             let (places, report) = hung(&mesh, params, substeps, 0);
             let effort = report.effort;

@@ -5,7 +5,7 @@ use pointmass::{
     ClothSprings, ConstraintKind, Drag, Gravity, Measures, Method, Particle, Scene, Sheet, Spring, SpringParams,
     StrainLimitParams, StrainLimits, Time, Vec3,
 };
-use pointmass_tests::{Random, f64s, gap, often, run, started};
+use pointmass_tests::{Random, every, f64s, gap, is_third, often, run, started};
 
 type Limits = StrainLimits<Vec<[u32; 3]>>;
 
@@ -41,10 +41,13 @@ fn strains(sheet: &Sheet, x: &[Vec3]) -> Vec<[f32; 3]> {
 
 #[test]
 fn a_net_with_a_heavy_load_hangs_within_its_limit() {
-    let mut random = Random::new(5);
+    let (mut random, mut cases) = (Random::new(5), 0);
     let mut methods = Method::ALL.iter().cycle();
     for (cells, scale) in [([3u32, 4u32], 1.0f32), ([6, 8], 0.1), ([4, 16], 20.0)] {
         for (substeps, turned, most) in [(2, false, 1.02f32), (5, true, 1.1), (20, false, 1.0)] {
+            if !is_third(&mut cases) {
+                continue;
+            }
             let [down, side] = pose(&mut random);
             let (long, edge) = (0.5 * scale, 0.5 * scale / cells[1] as f32);
             // Light knots under a heavier load would swing faster than these sub-steps resolve.
@@ -87,6 +90,8 @@ fn a_net_with_a_heavy_load_hangs_within_its_limit() {
 fn limits_give_way_by_their_compliance() {
     for (cells, substeps, method) in
         [([2u32, 5u32], 10, Method::Symplectic), ([4, 8], 20, Method::Verlet), ([3, 3], 5, Method::Rk4)]
+            .into_iter()
+            .step_by(every(2))
     {
         let (wide, long, compliance) = (0.2f32, 0.4f32, 2e-3f32);
         let sheet = Sheet { corner: Vec3::ONE, sides: [Vec3::X * wide, Vec3::NEG_Y * long], cells };

@@ -4,7 +4,7 @@ use pointmass::scene::{Model, SceneFile};
 use pointmass::{
     ConstraintKind, Drag, Gravity, Heap, Measures, Method, Particle, Scene, StrandParams, Strands, System, Time, Vec3,
 };
-use pointmass_tests::{Random, gap, often, run, started};
+use pointmass_tests::{Random, every, gap, is_run, is_third, often, run, started};
 use std::f64::consts::{PI, TAU};
 
 const G: f32 = 9.81;
@@ -103,10 +103,13 @@ fn a_cantilever_sags_as_beam_theory_has_it() {
 #[test]
 fn far_from_the_origin_a_wire_sags_as_near_it() {
     let mut methods = Method::ALL.iter().cycle();
-    let mut random = Random::new(11);
+    let (mut random, mut cases) = (Random::new(11), 0);
     for (edges, long, thick) in [(20u32, 0.3f32, 2e-3f32), (12, 0.5, 4e-3), (30, 0.2, 1e-3)] {
         for far in [10.0, 100.0, 300.0] {
             for (substeps, lag) in [(5, 2.0), (20, 2.0), (60, 4.0)] {
+                if !is_third(&mut cases) {
+                    continue;
+                }
                 let [along, down] = pose(&mut random);
                 let root = random.vector(1.0).normalize() * far;
                 let rod = Rod { root, along, long, edges };
@@ -207,6 +210,8 @@ fn what_hangs_gains_no_energy() {
 fn a_damped_wire_between_hooks_sags_as_far_as_it_stretches() {
     for (long, edges, substeps, damping) in
         [(1.0f32, 30u32, 4, 0.2f32), (1.0, 30, 10, 0.2), (0.5, 20, 10, 0.02), (3.0, 40, 20, 1.0)]
+            .into_iter()
+            .step_by(every(2))
     {
         let rod = Rod { root: Vec3::ONE, along: Vec3::X, long, edges };
         let (density, stretch) = (1e-3f32, 2.5e4f32);
@@ -669,10 +674,14 @@ fn nothing_does_a_strand_harm() {
         even(1e-30, f32::INFINITY, 1.0, 1e30),
         even(0.0, 0.0, 1.0, 0.0),
     ];
+    let mut cases = 0;
     for (at, (start, tame)) in starts.iter().enumerate() {
         for (number, &params) in params.iter().enumerate() {
             for points in [vec![12], vec![5, 3], vec![2], vec![1, 0], vec![99]] {
                 for (substeps, turning) in [(1, [0.0; 2]), (4, [0.0, 50.0]), (2, [f32::NAN, 1.0]), (3, [3e38; 2])] {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
                     let particles = (0..12).chain([77]).collect::<Vec<u32>>();
                     let held = [true; 2];
                     let tuft = Strands { twist: 3.0, held, turning, ..Strands::of(particles, points.clone(), params) };

@@ -7,7 +7,7 @@ use pointmass::{
     Attach, Constraint, ContactMaterial, Contacts, Distance, Heap, Meetings, Method, Particle, Penalty, Rope, Scene,
     Size, System, Time, Vec3,
 };
-use pointmass_tests::{Random, f64s, gap, started};
+use pointmass_tests::{Random, f64s, gap, is_run, is_third, started};
 
 /// Rooms of unlike sides about the origin and far from it, and one that is open upward.
 fn rooms() -> [Room; 3] {
@@ -92,6 +92,7 @@ fn run(scene: &Scene<'_>, h: f64, steps: u32) -> System<Heap> {
 #[test]
 fn sides_are_nowhere() {
     let shifts = [Vec3::splat(0.5), Vec3::ZERO, Vec3::new(0.1, 0.0, 0.96), Vec3::new(0.98, 0.5, 0.03)];
+    let mut cases = 0;
     for (i, &method) in Method::ALL.iter().enumerate() {
         for (room, (substeps, h)) in rooms().into_iter().zip([(1, 2e-3), (4, 1e-2), (12, 1.0 / 60.0)]) {
             for (k, &share) in shifts.iter().enumerate() {
@@ -100,6 +101,9 @@ fn sides_are_nowhere() {
                 let first = chain()[0].position;
                 let pivot = room.wrap(first + by) - first;
                 for (open, shifted) in bonds(Vec3::ZERO).into_iter().zip(bonds(pivot)) {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
                     let at = |particle: &Particle| room.wrap(particle.position + by);
                     let start: Vec<_> = open.start.iter().map(|p| Particle { position: at(p), ..*p }).collect();
                     let structure = Structure::ALL[(i + k) % Structure::ALL.len()];
@@ -147,6 +151,7 @@ fn sides_are_nowhere() {
 #[test]
 fn a_gas_of_balls_has_no_walls() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("three threads");
+    let mut cases = 0;
     for room in rooms() {
         let mut random = Random::new(11);
         let at = |i: usize| Vec3::new((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32) * 0.9 + 0.13;
@@ -177,7 +182,7 @@ fn a_gas_of_balls_has_no_walls() {
                 ended.hash()
             };
             let among_all = play(&Periodic { room, index: () });
-            for &structure in Structure::ALL {
+            for &structure in Structure::ALL.iter().filter(|_| is_third(&mut cases)) {
                 let index = Periodic { room, index: structure };
                 assert_eq!(play(&index), among_all, "{structure}");
                 assert_eq!(pool.install(|| play(&index)), among_all, "{structure} in threads");

@@ -3,7 +3,7 @@
 use pointmass::constrain::{ConstraintKind, ShapeMatching, Tie, TiedRope};
 use pointmass::scene::{Model, SceneFile};
 use pointmass::{Constraint, Measures, Method, Particle, Rope, Scene, Vec3};
-use pointmass_tests::{Random, gap, run, started};
+use pointmass_tests::{Random, every, gap, is_third, run, started};
 
 fn model(text: &str) -> Result<Model, String> {
     let file = SceneFile::from_json("it.json", text).map_err(|error| error.to_string())?;
@@ -51,11 +51,12 @@ fn ropes_stretch_by_their_closed_form_however_fine_they_are() {
 /// What hangs from a rope however heavy does not stretch it, nor leave it, whichever way it is fixed on.
 #[test]
 fn a_rope_carries_what_it_is_tied_to() {
+    let mut cases = 0;
     for (number, segments) in [1u32, 5, 40].into_iter().enumerate() {
         for (k, mass) in [1.0, 10.0, 100.0].into_iter().enumerate() {
             for aside in [0.0, 0.06] {
                 // Links that are some 10,000 times as light as what hangs from them swing faster than sub-steps show.
-                if segments == 40 && mass > 10.0 {
+                if !is_third(&mut cases) || segments == 40 && mass > 10.0 {
                     continue;
                 }
                 let text = format!(
@@ -176,7 +177,8 @@ fn what_is_tied_goes_with_its_place() {
     // Two points of each strand, three of the cloth, and a button; the rope has its own.
     assert_eq!(count(|kind| matches!(kind, ConstraintKind::Tie(_))), 14);
     assert_eq!(count(|kind| matches!(kind, ConstraintKind::TiedRope(_))), 1);
-    for (method, substeps) in [(Method::Symplectic, 10), (Method::Rk4, 15), (Method::Verlet, 12)] {
+    let ways = [(Method::Symplectic, 10), (Method::Rk4, 15), (Method::Verlet, 12)];
+    for (method, substeps) in ways.into_iter().step_by(every(2)) {
         let scene = Scene { substeps, integrator: method.integrator(), ..model.scene() };
         let mut system = started(&scene, model.particles.len(), 1);
         run(&mut system, &scene, 1.0 / 60.0, 90);

@@ -6,7 +6,7 @@ use pointmass::shape::Sphere;
 use pointmass::{Emitter, Heap, Measures, Method, MutualGravity, Particle, Scene, System, Time, Varied, Vec3};
 use pointmass_tests::fields::{Charges, bits};
 use pointmass_tests::points::Spread;
-use pointmass_tests::{Form, Random, f64s, gap, often, run, started};
+use pointmass_tests::{Form, Random, f64s, gap, is_third, often, run, started};
 
 #[test]
 fn it_nearly_conserves_momentum() {
@@ -105,10 +105,14 @@ fn what_is_not_a_number_harms_nobody() {
         Particle { mass: inf, ..Particle::REST },
         Particle { velocity: Vec3::splat(nan), mass: 1e-9, ..Particle::REST },
     ];
+    let mut cases = 0;
     for &method in Method::ALL {
         for quadrupole in BOTH {
             let force = MutualGravity { quadrupole, ..UNIT };
             for bad in bad {
+                if !is_third(&mut cases) {
+                    continue;
+                }
                 let mut start = sound.clone();
                 start.insert(100, bad);
                 let scene = Scene { start: &start, forces: &force, integrator: method.integrator(), ..Scene::EMPTY };

@@ -8,7 +8,7 @@ use pointmass::shape::{Aabb, Cuboid, Moving, Plane};
 use pointmass::{
     ContactMaterial, Emitter, Gravity, Impact, Meetings, Observer, Particle, Scene, Spread, Time, Varied, Vec3,
 };
-use pointmass_tests::{Random, f64s, often, point, run, started};
+use pointmass_tests::{Random, f64s, is_third, often, point, run, started};
 
 /// Balls of all sizes on a lattice of so many along each side, a metre apart, in motion.
 fn crowd(random: &mut Random, n: usize, speed: f32) -> Vec<Particle> {
@@ -208,10 +208,11 @@ fn hash_with(index: &dyn IndexChoice, fast: bool) -> (u64, pointmass::Report) {
 
 #[test]
 fn every_index_gives_the_same_bits() {
+    let mut cases = 0;
     for fast in [false, true] {
         let (want, report) = hash_with(&(), fast);
         assert!(report.contacts > 300 && report.hits > 300 && report.born > 30, "{report:?}");
-        for structure in Structure::ALL {
+        for structure in Structure::ALL.iter().filter(|_| is_third(&mut cases)) {
             assert_eq!(hash_with(structure, fast).0, want, "{structure}");
         }
         assert_eq!([&InGrid as &dyn IndexChoice, &InKd].map(|index| hash_with(index, fast).0), [want; 2]);

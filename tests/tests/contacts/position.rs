@@ -6,7 +6,7 @@ use pointmass::shape::{Cuboid, Plane};
 use pointmass::{
     ContactMaterial, Contacts, Gravity, Measures, Method, MutualGravity, Particle, Rope, Scene, Spring, Time, Vec3,
 };
-use pointmass_tests::{G, Random, f64s, gap, run, started};
+use pointmass_tests::{G, Random, f64s, gap, methods, run, started};
 
 /// Hard balls in as many sub-steps as a heap asks for.
 const HEAP: Scene<'_> = Scene { substeps: 12, constraints: &Contacts::HARD, ..Scene::EMPTY };
@@ -35,10 +35,12 @@ fn a_soft_floor_gives_way_by_the_same_however_many_sub_steps() {
 /// The weight above each contact of a stack decides how far it gives way, by every method.
 #[test]
 fn soft_balls_sink_by_their_weight_whatever_the_method() {
+    let mut round = 0;
     for (mass, compliance) in [(1.0f32, 1e-3f32), (0.2, 2e-3), (0.1, 1e-3), (10.0, 1e-5)] {
         let sinks = f64::from(mass) * G * f64::from(compliance);
-        for method in Method::ALL {
-            for (count, substeps, most) in [(1, 1, 0.01), (1, 5, 0.01), (1, 12, 0.01), (3, 5, 0.1), (3, 12, 0.02)] {
+        for (count, substeps, most) in [(1, 1, 0.01), (1, 5, 0.01), (1, 12, 0.01), (3, 5, 0.1), (3, 12, 0.02)] {
+            round += 1;
+            for method in methods(round) {
                 let start: Vec<_> = (0..count).map(|i| Particle { mass, ..ball(0.1 + 0.2 * i as f32) }).collect();
                 let (forces, constraints) = (&Gravity::EARTH, &Contacts { compliance });
                 let parts = Scene { start: &start, forces, colliders: &GROUND, constraints, ..Scene::EMPTY };

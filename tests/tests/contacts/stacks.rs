@@ -5,7 +5,7 @@ use pointmass::force::Friction;
 use pointmass::index::Structure;
 use pointmass::shape::{Affine, Collider, Cuboid, Placed, Plane};
 use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Vec3};
-use pointmass_tests::{G, Random, run, started};
+use pointmass_tests::{G, Random, methods, run, started};
 
 /// Steps a second, sub-steps of each.
 const STEPS: [(u32, u32); 4] = [(24, 6), (60, 4), (60, 12), (240, 20)];
@@ -57,15 +57,17 @@ impl Stack<'_> {
 
 #[test]
 fn a_stack_slides_as_far_as_one_ball() {
+    let mut round = 0;
     for (masses, bound) in
         [(&[1.0, 1.0][..], 0.02), (&[4.0, 1.0], 0.02), (&[1.0, 4.0], 0.03), (&[1.0, 1.0, 1.0], 0.1), (&[1.0; 6], 0.7)]
     {
         for (speed, friction) in [(3.0, 0.3), (2.0, 0.5)] {
-            for method in Method::ALL {
-                for steps in STEPS {
+            for steps in STEPS {
+                round += 1;
+                for method in methods(round) {
                     // A stack that follows sub-steps only slowly, being heavy or high, gets there with more of them.
                     let bound = if steps.1 >= 12 { 0.2 * bound } else { bound };
-                    for way in (Stack { masses, speed, friction }).ways(*method, steps) {
+                    for way in (Stack { masses, speed, friction }).ways(method, steps) {
                         assert!((way - 1.0).abs() < bound, "{masses:?}, {friction}, {method}, {steps:?}: {way}");
                     }
                 }
@@ -76,14 +78,16 @@ fn a_stack_slides_as_far_as_one_ball() {
 
 #[test]
 fn a_pyramid_settles_and_then_stands_still() {
+    let mut round = 0;
     for (friction, radius, origin) in [(0.3, 0.1, Vec3::ZERO), (0.8, 2.0, Vec3::new(5.0, 0.0, -3.0))] {
         let materials = [rubbing(friction)];
         let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
         let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, z)| Vec3::new(x, 1.0, z));
         let places = corners.into_iter().chain([Vec3::Y * (1.0 + 2f32.sqrt())]);
         let start: Vec<_> = places.map(|place| ball(origin + place * radius, radius)).collect();
-        for method in Method::ALL {
-            for (rate, substeps) in [(24, 1), (60, 2), (60, 12), (240, 20)] {
+        for (rate, substeps) in [(24, 1), (60, 2), (60, 12), (240, 20)] {
+            round += 1;
+            for method in methods(round) {
                 let scene = Scene {
                     start: &start,
                     materials: &materials,
@@ -91,7 +95,7 @@ fn a_pyramid_settles_and_then_stands_still() {
                     colliders: &floor,
                     substeps,
                     constraints: &Contacts::HARD,
-                    integrator: method,
+                    integrator: &method,
                     ..Scene::EMPTY
                 };
                 let mut system = started(&scene, start.len(), 1);

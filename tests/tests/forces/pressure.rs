@@ -3,7 +3,7 @@
 use super::forces;
 use pointmass::constrain::{Shell, ShellParams, mesh_hinges};
 use pointmass::{Drag, Force, Method, Particle, Pressure, Scene, Spring, Time, Vec3};
-use pointmass_tests::{Random, f64s, gap, icosahedron, run, started};
+use pointmass_tests::{Random, every, f64s, gap, icosahedron, often, run, started};
 
 type Mesh = Vec<[u32; 3]>;
 
@@ -93,7 +93,7 @@ fn a_balloon_rests_where_its_skin_holds_the_gas() {
         let integrator = method.integrator();
         let scene = Scene { start: &damped, springs: &springs, forces: &all, integrator, ..Scene::EMPTY };
         let mut system = started(&scene, start.len(), 0);
-        run(&mut system, &scene, 0.01, 1500);
+        run(&mut system, &scene, 0.01, often(1500).max(500) as u32);
         // Springs differ a little in length, so it rests in a shape a little different from the ball.
         let r = radius(system.particles().position);
         assert!((r - 1.0).abs() < 5e-3, "{method}: {r}");
@@ -124,7 +124,9 @@ fn a_balloon_rests_where_its_skin_holds_the_gas_however_damped_that_is() {
     let right = radius(0.0, 12, Method::Verlet);
     assert!(right > 1.15, "{right}");
     for (damping, substeps, method) in
-        [(0.002, 10, Method::Verlet), (0.05, 5, Method::Symplectic), (0.2, 8, Method::Implicit)]
+        [(0.05, 5, Method::Symplectic), (0.002, 10, Method::Verlet), (0.2, 8, Method::Implicit)]
+            .into_iter()
+            .step_by(every(2))
     {
         let r = radius(damping, substeps, method);
         assert!((r / right - 1.0).abs() < 5e-3, "{damping} s, {method} in {substeps}: {r}, not {right}");

@@ -5,7 +5,7 @@ use pointmass::force::Friction;
 use pointmass::material::ContactMaterial;
 use pointmass::shape::{Collider, Sphere};
 use pointmass::{Gravity, Method, Scene, Time, Vec3};
-use pointmass_tests::started;
+use pointmass_tests::{every, started};
 
 /// Two sheets fly over a ball, one on the other: in a step they go around a part of it that a straight way would cut off.
 #[test]
@@ -15,7 +15,10 @@ fn what_goes_around_a_ball_in_a_step_does_not_pass_what_lies_on_it() {
         (6, 60, 0.1, 1.5, Method::Rk4),
         (15, 20, 10.0, 2.0, Method::Verlet),
         (4, 80, 1.0, 0.5, Method::Symplectic),
-    ] {
+    ]
+    .into_iter()
+    .step_by(every(2))
+    {
         let ball = Sphere { center: Vec3::ZERO, radius: 0.1 * size };
         let mut cloths = Cloths::default();
         for layer in 0..3 {

@@ -17,7 +17,7 @@ use pointmass::material::ContactMaterial;
 use pointmass::scene::{Model, SceneFile};
 use pointmass::shape::{Collider, Plane, Sphere};
 use pointmass::{Force, Gravity, Measures, Method, Scene, Sheet, Time, Vec3};
-use pointmass_tests::{Random, gap, started};
+use pointmass_tests::{Random, every, gap, started};
 
 #[test]
 fn the_test_of_crossings_tells_them() {
@@ -30,7 +30,7 @@ fn the_test_of_crossings_tells_them() {
 
 /// Heaps on a floor, and over a ball: they fall onto themselves from all sides.
 fn heaps(cases: &[(u32, u32, f32, Vec3, Method)], frames: u64) {
-    for &(cells, substeps, size, far, method) in cases {
+    for &(cells, substeps, size, far, method) in cases.iter().step_by(every(2)) {
         let floor = Plane { point: far, normal: Vec3::Y };
         let ball = Sphere { center: far + Vec3::Y * (0.12 * size), radius: 0.1 * size };
         let worlds: [&dyn Collider; 2] = [&floor, &(floor, ball)];
@@ -179,7 +179,8 @@ fn four_layers_stay_four() {
 
 #[test]
 fn four_layers_stay_four_for_ten_seconds() {
-    layers(&[(5, 1.0, Vec3::ZERO, Method::Symplectic)], [6, 3], 600);
+    let cells = if cfg!(debug_assertions) { [4, 2] } else { [6, 3] };
+    layers(&[(5, 1.0, Vec3::ZERO, Method::Symplectic)], cells, 600);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use pointmass::shape::{Collider, Cuboid, Plane, Sphere, Triangle};
 use pointmass::{Gravity, Method, Particle, Scene, Vec3};
-use pointmass_tests::{G, Random, f64s, run, started};
+use pointmass_tests::{G, Random, every, f64s, run, started};
 
 /// Methods that conserve energy in free fall.
 const CONSERVING: [Method; 3] = [Method::Midpoint, Method::Verlet, Method::Rk4];
@@ -22,8 +22,8 @@ fn check(name: &str, collider: &dyn Collider, start: &[Particle], gravity: f64, 
     let height = |particle: &Particle| level + f64::from(particle.radius);
     let before: Vec<f64> =
         start.iter().map(|begun| energy(begun.position, begun.velocity, gravity, height(begun))).collect();
-    for (rate, share) in [(60.0, 1e-4), (7.0, 1e-3)] {
-        for method in CONSERVING {
+    for (i, (rate, share)) in [(60.0, 1e-4), (7.0, 1e-3)].into_iter().enumerate() {
+        for method in CONSERVING.into_iter().skip(i % every(2)).step_by(every(2)) {
             let integrator = method.integrator();
             let scene = Scene { start, forces: &forces, colliders: collider, integrator, ..Scene::EMPTY };
             let mut system = started(&scene, start.len(), 1);

@@ -4,7 +4,7 @@ use pointmass::force::Friction;
 use pointmass::motion::Motion;
 use pointmass::shape::{Aabb, Affine, Collider, Cuboid, Cylinder, Disc, Moving, Placed, Plane, Sphere};
 use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Time, Vec3};
-use pointmass_tests::{Form, f64s, gap, is_run, run, started};
+use pointmass_tests::{Form, f64s, gap, is_run, is_third, methods, run, started};
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
@@ -38,12 +38,15 @@ fn turning(pivot: Vec3, spin: f32) -> Moving<Disc> {
 
 #[test]
 fn on_a_disc_that_spins_it_stays_where_it_is() {
-    for (pivot, spin, distance) in [
+    for (i, (pivot, spin, distance)) in [
         (Vec3::ZERO, 0.25f32, 1.0f32),
         (Vec3::new(3.0, 1.0, -2.0), -0.25, 1.0),
         (Vec3::new(0.5, 0.0, 0.25), 0.15, 3.0),
         (Vec3::new(0.5, 0.0, 0.25), 0.5, 0.4),
-    ] {
+    ]
+    .into_iter()
+    .enumerate()
+    {
         let disc = turning(pivot, spin);
         let omega = core::f64::consts::TAU * f64::from(spin);
         let start: Vec<Particle> = [0.0f32, 0.1]
@@ -55,9 +58,9 @@ fn on_a_disc_that_spins_it_stays_where_it_is() {
                 ..Particle::REST
             })
             .collect();
-        for rate in [10.0, 60.0, 1000.0] {
-            let methods = Method::ALL.iter().filter(|&&m| rate < 100.0 || matches!(m, Method::Rk4 | Method::Euler));
-            for &method in methods {
+        for (j, rate) in [10.0, 60.0, 1000.0].into_iter().enumerate() {
+            let methods = methods(i + j).filter(|m| rate < 100.0 || matches!(m, Method::Rk4 | Method::Euler));
+            for method in methods {
                 for (row, x) in after(&disc, 0.5, &start, method, rate, 20.0).into_iter().enumerate() {
                     let x = x - pivot;
                     let away = f64::from(x.x).hypot(f64::from(x.z));
@@ -77,8 +80,8 @@ fn on_a_disc_that_spins_it_stays_where_it_is() {
 
 #[test]
 fn on_a_disc_that_spins_it_stays_where_it_is_by_position() {
-    for (pivot, spin, distance, radius) in
-        [(Vec3::ZERO, 0.25f32, 1.0f32, 0.05f32), (Vec3::new(3.0, 1.0, -2.0), -0.15, 3.0, 0.2)]
+    for (i, (pivot, spin, distance, radius)) in
+        [(Vec3::ZERO, 0.25f32, 1.0f32, 0.05f32), (Vec3::new(3.0, 1.0, -2.0), -0.15, 3.0, 0.2)].into_iter().enumerate()
     {
         let disc = turning(pivot, spin);
         let omega = core::f32::consts::TAU * spin;
@@ -88,9 +91,9 @@ fn on_a_disc_that_spins_it_stays_where_it_is_by_position() {
             radius,
             ..Particle::REST
         }];
-        for (rate, substeps) in [(10.0, 12), (60.0, 12), (60.0, 1), (24.0, 40)] {
+        for (j, (rate, substeps)) in [(10.0, 12), (60.0, 12), (60.0, 1), (24.0, 40)].into_iter().enumerate() {
             let touching = Scene { substeps, constraints: &Contacts::HARD, ..Scene::EMPTY };
-            for &method in Method::ALL {
+            for method in methods(i + j) {
                 let x = after_touching(touching, &disc, 0.5, &start, method, rate, 20.0)[0] - pivot;
                 let away = x.x.hypot(x.z) / distance;
                 // Chords of the arc are trapezoids in time: they stray by a part in 24 of the fourth power of the angle.
@@ -163,6 +166,7 @@ fn on_whatever_moves_it_goes_along() {
         // It rocks too slowly to throw off anything: a turn in 100 s about a level axis.
         Motion { axis: Vec3::Z, spin: -0.01, pivot: Vec3::Y * -1.0, ..Motion::STILL },
     ];
+    let mut cases = 0;
     for map in [level, tilt] {
         let placed = Placed::new(slab, map).expect("it only turns");
         for (i, motion) in motions.iter().enumerate() {
@@ -184,7 +188,8 @@ fn on_whatever_moves_it_goes_along() {
                 })
                 .collect();
             for rate in [10.0, 60.0, 400.0] {
-                for method in [Method::Verlet, Method::Rk4, Method::Symplectic] {
+                let methods = [Method::Verlet, Method::Rk4, Method::Symplectic];
+                for method in methods.into_iter().filter(|_| is_third(&mut cases)) {
                     for (begun, x) in start.iter().zip(after(&moving, 0.9, &start, method, rate, 5.0)) {
                         let first = motion.at(Time::ZERO);
                         let back = first.inverse().expect("it only moves").point(begun.position);

@@ -4,7 +4,7 @@ use pointmass::force::Friction;
 use pointmass::motion::{Motion, Script};
 use pointmass::shape::{Aabb, Collider, Cuboid, Hit, Mesh, Moving, Plane, Scenery, Segment, Shape, Surface, Triangle};
 use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Time, Vec3};
-use pointmass_tests::{Random, often, run, started};
+use pointmass_tests::{Random, every, often, run, started};
 
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
@@ -119,6 +119,7 @@ fn what_is_in_a_room_of_walls_that_move_as_one_stays_in_it() {
                 material: Some(0),
                 ..Particle::REST
             })
+            .step_by(every(3))
             .collect();
         let integrator = method.integrator();
         let parts = Scene { start: &start, forces: &Gravity::EARTH, colliders, materials: &materials, ..Scene::EMPTY };
