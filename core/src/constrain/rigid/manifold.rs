@@ -29,7 +29,7 @@ pub(super) struct Point {
 impl Point {
     /// The speed below which the two come together by their weight, not by a blow \[m/s\].
     pub(super) fn calm(&self, span: Span) -> f32 {
-        self.driven * span.step / span.h
+        self.driven * span.calm()
     }
 }
 

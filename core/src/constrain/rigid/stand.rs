@@ -359,7 +359,7 @@ fn across<F: Eight>(normal: Vectors<F>) -> Vectors<F> {
 /// The speed below which two come together by their weight, not by a blow \[m/s\].
 #[inline(always)]
 fn calm<F: Eight>(driven: F, span: Span) -> F {
-    driven * driven.all(span.step) / driven.all(span.h)
+    driven * driven.all(span.calm())
 }
 
 /// The change of the speed at which two part that is too small to go over their neighbours again for \[m/s\].
