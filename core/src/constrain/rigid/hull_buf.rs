@@ -144,8 +144,9 @@ impl Wrap {
         // in it.
         let second = self.beyond(first, Vec3::Z).ok_or(HullError::Flat)?;
         let side = self.points[second] - self.points[first];
-        if self.add(first, side, unit(Vec3::Z.cross(side))) == Err(HullError::Flat) {
-            self.wrap(first, side)?;
+        match self.add(first, side, unit(Vec3::Z.cross(side))) {
+            Err(HullError::Flat) => self.wrap(first, side)?,
+            added => added?,
         }
         let (mut number, mut side) = (0, 0);
         while let Some(face) = self.faces.get(number) {
