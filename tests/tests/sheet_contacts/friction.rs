@@ -6,7 +6,7 @@ use pointmass::force::Friction;
 use pointmass::material::ContactMaterial;
 use pointmass::shape::{Collider, Plane};
 use pointmass::{Gravity, Method, Scene, Time, Vec3};
-use pointmass_tests::{every, started};
+use pointmass_tests::{every, methods, started};
 
 /// What a sheet lies on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +39,8 @@ struct Slide {
     /// The angle about the ground's normal, in which the slope goes down \[rad\], and where it is \[sizes\].
     heading: f32,
     far: Vec3,
+    /// How many cells each side of it has.
+    cells: u32,
 }
 
 impl Slide {
@@ -99,7 +101,7 @@ impl Slide {
         let count = cloths.start.len();
         let center = (self.far + high(upper) + across * 0.013) * size;
         let sides = [down * 0.2 + across * 0.03, across * 0.2 - down * 0.03].map(|side| side * size);
-        cloths.add(&square(center, sides, 4), stiff, |x| x, down * (self.speed * size));
+        cloths.add(&square(center, sides, self.cells), stiff, |x| x, down * (self.speed * size));
         cloths.start[count..]
             .iter_mut()
             .for_each(|particle| particle.material = Some(if self.ground == Ground::Loose { 2 } else { 0 }));
@@ -126,6 +128,7 @@ fn slides() -> impl Iterator<Item = Slide> {
         size: [1.0, 0.1, 10.0, 1.0, 0.5][(i / 2) % 5],
         heading: 0.7 * i as f32,
         far: [Vec3::ZERO, Vec3::new(3.0, 1.0, -2.0), Vec3::new(-0.5, -0.2, 0.3)][(i / 3) % 3],
+        cells: 4,
     })
 }
 
@@ -163,6 +166,35 @@ fn on_slopes_sheets_lie_still_below_the_angle_of_friction_and_slide_above_it() {
             assert!((speed - gain * time).abs() < faster, "{slide:?}: {speed}, not {}", gain * time);
             let wanted = 0.5 * gain * time * time;
             assert!((way - wanted).abs() < farther, "{slide:?}: {way}, not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn sheets_of_many_cells_slide_whole_in_steps_of_any_length_anywhere() {
+    // How far gravity moves a particle in a sub-step is more than rounding by far here, about as much there, and less in the shortest ones.
+    let spans = [(60, 1), (60, 4), (60, 20), (24, 1), (144, 1), (480, 1), (1000, 1)];
+    let cases = spans.into_iter().flat_map(|span| [0.0, 2.0, 18.0, 100.0].map(|far| (span, far)));
+    for (i, ((rate, substeps), far)) in cases.enumerate() {
+        for method in methods(i) {
+            let mu = [0.4, 0.2, 0.6][i % 3];
+            let slide = Slide {
+                ground: Ground::Plane,
+                mu,
+                slope: 1.3 * mu,
+                speed: 0.0,
+                time: 0.5,
+                method,
+                substeps,
+                rate,
+                size: 1.0,
+                heading: 0.3 + 0.7 * i as f32,
+                far: Vec3::new(0.6 * far, 0.0, -0.8 * far),
+                cells: 16,
+            };
+            let gain = G / (1.0 + slide.slope * slide.slope).sqrt() * (slide.slope - mu);
+            let [_, speed, _] = slide.run();
+            assert!((speed - gain * slide.time).abs() < 0.03 * gain / 0.3 * slide.time, "{slide:?}: {speed}");
         }
     }
 }

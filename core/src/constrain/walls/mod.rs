@@ -17,7 +17,7 @@ pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, m
 use super::contacts::{TangentImpulse, Touch};
 use super::{Bodies, Substep};
 use crate::material::on_surface;
-use crate::math::{dot, high, largest, length, low, max, min, sqrt};
+use crate::math::{aside, dot, high, largest, length, low, max, min, sqrt};
 use crate::memory::take;
 use crate::shape::{Aabb, Contact, Segment};
 use glam::{Mat3, Vec3};
@@ -29,6 +29,8 @@ const RECOVERY: f32 = 0.2;
 /// So many times what rounding may be wrong by has to be missing for a wall to press: what presses less is left to whoever settles velocities, as
 /// rounding would be a large part of it.
 const NOTICED: f32 = 4.0;
+/// How many times faster than what its friction can stop in a sub-step a particle has to slip to be taken for one that does.
+const FAST: f32 = 4.0;
 /// The share of the largest coordinate by which rounding may put a particle off what it touches.
 const ROUNDING: f32 = 4e-6;
 /// The cosine of the least angle between two faces that a particle is kept from at once.
@@ -233,7 +235,7 @@ impl Wall {
             self.touch.begin(0.0);
             // Who was pressed in the sub-step before most often still is.
             if most > NOTICED * self.slack || was > NEAR {
-                self.press();
+                self.press(most, bodies);
             }
         }
     }
@@ -294,9 +296,13 @@ impl Wall {
         *self = Self { state, normal, offset, velocity, slack, pushed, held, brake, stuck, touch, tangent, ..*self };
     }
 
-    /// Begins to press: with friction as if that held it.
-    fn press(&mut self) {
-        self.state = if self.touch.sticks() { STICKS } else { SLIDES };
+    /// Begins to press a particle that is so far behind it \[m\]: with friction as if that held it, unless it slips by far faster than what presses it
+    /// like that can stop. Whatever hangs on it would be held as well until solutions have let go of all of them.
+    fn press(&mut self, missing: f32, bodies: &Bodies<'_>) {
+        let slip = aside(bodies.before[1][self.row as usize] - self.velocity, self.normal);
+        let [resting, _] = self.touch.friction();
+        let holds = length(slip) * bodies.substep.seconds() <= FAST * resting * max(missing, 0.0);
+        self.state = if self.touch.sticks() && holds { STICKS } else { SLIDES };
         self.fresh = 1;
     }
 }

@@ -100,6 +100,7 @@ pub(in crate::constrain) fn impose(
 /// that is other than before.
 pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift: &[Vec3], left: &mut [Vec3]) -> bool {
     let mut changed = false;
+    let slips = slips_as_one(walls);
     for ((wall, &shift), left) in walls.iter_mut().zip(shift).zip(left).filter(|((wall, _), _)| wall.state >= NEAR) {
         let load = -wall.held.dot(wall.normal);
         changed |= match wall.state {
@@ -107,7 +108,7 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
                 let missing = wall.offset - (bodies.position[wall.row as usize] + shift).dot(wall.normal);
                 let presses = missing > NOTICED * wall.slack;
                 if presses {
-                    wall.press();
+                    wall.press(missing, bodies);
                 }
                 presses
             }
@@ -117,7 +118,7 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
                 (wall.state, wall.held, wall.brake) = (NEAR, Vec3::ZERO, 0.0);
                 true
             }
-            STICKS => wall.let_slip(load, left),
+            STICKS => wall.let_slip(if slips { 0.0 } else { load }, left),
             _ if wall.touch.sticks() => {
                 let slid = wall.slid(bodies, shift);
                 wall.brake(load, bodies.inverse_mass[wall.row as usize], slid, left)
@@ -126,6 +127,18 @@ pub(in crate::constrain) fn judge(walls: &mut [Wall], bodies: &Bodies<'_>, shift
         };
     }
     changed
+}
+
+/// Tells whether all that stick take more together than their friction can hold: then they slip at once. One by one each would hand on what it lets go of
+/// to those that still stick beside it, and a stiff sheet would be held by these.
+fn slips_as_one(walls: &[Wall]) -> bool {
+    let mut sum = (Vec3::ZERO, 0.0);
+    for wall in walls.iter().filter(|wall| wall.state == STICKS) {
+        let [resting, _] = wall.touch.friction();
+        sum.0 += aside(wall.held, wall.normal);
+        sum.1 += resting * max(-wall.held.dot(wall.normal), 0.0);
+    }
+    length(sum.0) > sum.1
 }
 
 impl Wall {
