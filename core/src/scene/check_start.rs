@@ -44,7 +44,9 @@ impl SceneFile {
             if matches!(&cloth.form, Form::Sheet(sheet) if !(length(sheet.sides[0].cross(sheet.sides[1])) > 0.0)) {
                 return refuse("form", "its sides have to be longer than zero and not parallel: they span no area");
             }
-            if let Some(cells) = cloth.cells().filter(|cells| cells.contains(&0) && cloth.needs_triangles()) {
+            if let Some(cells) =
+                cloth.sheet().map(|sheet| sheet.cells).filter(|cells| cells.contains(&0) && cloth.needs_triangles())
+            {
                 let message = format!(
                     "has to be 1 at least along both sides, not {cells:?}: without triangles there is nothing to weigh or to stretch"
                 );

@@ -248,9 +248,9 @@ impl Cloth {
         self.by_area().is_some() || self.is_shell()
     }
 
-    /// The cells of a sheet along its sides.
-    pub(super) fn cells(&self) -> Option<[u32; 2]> {
-        if let Form::Sheet(sheet) = &self.form { Some(sheet.cells) } else { None }
+    /// Its form, if that is a sheet.
+    pub(super) fn sheet(&self) -> Option<&Sheet> {
+        if let Form::Sheet(sheet) = &self.form { Some(sheet) } else { None }
     }
 
     /// Its triangles, by its particles counted from 0.
@@ -348,6 +348,6 @@ impl Cloth {
 
     /// The particles of a sheet; those of a mesh are known once it is read.
     pub(super) fn count(&self) -> Option<u64> {
-        Some(self.cells()?.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n) + 1)))
+        Some(self.sheet()?.cells.iter().fold(1, |product: u64, &n| product.saturating_mul(u64::from(n) + 1)))
     }
 }

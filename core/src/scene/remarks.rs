@@ -58,6 +58,7 @@ impl SceneFile {
         add(format_args!("boxes"), self.uneven_boxes());
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
+            add(format_args!("cloths[{i}]"), self.long_for_plate(cloth));
         }
         if let Some(Response::Force(penalty)) = self.contacts {
             add(format_args!("contacts.force.friction.static"), odd_friction(penalty.friction));
@@ -146,6 +147,36 @@ impl SceneFile {
             };
             (enough != Some(taken)).then(says)
         })
+    }
+
+    /// A remark on a plate: a sheet that is held by some of its points and that stands by its stiffness against bending. A sub-step solves what is linear
+    /// in its way, and a cell of length ℓ that turns through g h² is longer by (g h² / ℓ)² / 2 of itself then; where what that pulls with is more than its
+    /// weight it sags too far, or shakes.
+    fn long_for_plate(&self, cloth: &Cloth) -> Option<String> {
+        /// The share of its weight that it pulls with from which on it shows, as measured.
+        const SHOWS: f32 = 2.0;
+        /// The share of its longer side that bending bears by itself.
+        const STANDS: f32 = 0.25;
+        let (params, density, sheet) = (cloth.shell_params()?, cloth.by_area()?, cloth.sheet()?);
+        let (pull, taken) = (length(self.pull()), self.run.substeps.max(1));
+        let longest = sheet.sides.map(length).into_iter().fold(0.0, f32::max);
+        let (weight, share) = (density * pull, STANDS * longest);
+        if cloth.fixed.is_empty() || !(params.bending > weight * share * share * share) {
+            return None;
+        }
+        let cells = sheet.sides.into_iter().zip(sheet.cells).map(|(side, cells)| length(side) / cells as f32);
+        let h = self.run.dt as f32 / taken as f32;
+        let turns = pull * h * h / cells.fold(f32::INFINITY, f32::min);
+        let stretch = params.stretch.into_iter().fold(0.0, f32::max);
+        let excess = 0.5 * turns * turns * stretch / (SHOWS * weight * longest);
+        let shakes = || {
+            let needed = (taken as f32 * sqrt(sqrt(excess))) as u32;
+            let needed = needed.saturating_add(1);
+            format!(
+                "it is so stiff that what it stretches by as it bends in a sub-step outweighs it: it hangs too far, or shakes; run.substeps of {needed} are enough"
+            )
+        };
+        (excess > 1.0).then(shakes)
     }
 
     /// A remark on what reaches out of the room through one side and not through the opposite one, where it would come in again.
