@@ -4,10 +4,9 @@ use std::{env, fs, path::Path};
 
 fn main() {
     let target = env::var("TARGET").expect("cargo sets TARGET");
-    println!("cargo::rustc-check-cfg=cfg(roomy)");
     if target.starts_with("wasm32") {
         // No board: memory is what one asks for.
-        return println!("cargo::rustc-cfg=roomy");
+        return;
     }
     let (board, scripts): (_, &[&str]) = match target.as_str() {
         "thumbv7em-none-eabihf" => ("mps2-an386", &["link.x"]),
@@ -16,11 +15,6 @@ fn main() {
         "riscv32imac-unknown-none-elf" => ("virt", &["memory.x", "link.x"]),
         other => panic!("no board for {other}: see tests/firmware/build.rs"),
     };
-
-    // The microbit has 16 KiB, which the scenes take.
-    if board != "microbit" {
-        println!("cargo::rustc-cfg=roomy");
-    }
 
     let source = format!("memory/{board}.x");
     let out = env::var("OUT_DIR").expect("cargo sets OUT_DIR");

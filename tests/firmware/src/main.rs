@@ -1,5 +1,5 @@
-//! Runs the hash scenes on a microcontroller, or in WebAssembly, and compares them with `tests/hashes.txt`; where there is memory enough, the
-//! indices, the methods of motion, the responses of balls and what holds together as well, with `tests/indices.txt`,
+//! Runs the hash scenes on a microcontroller, or in WebAssembly, and compares them with `tests/hashes.txt`; with the feature `roomy`, for what
+//! has the memory, the indices, the methods of motion, the responses of balls and what holds together as well, with `tests/indices.txt`,
 //! `tests/motion.txt`, `tests/contacts.txt` and `tests/bonds.txt`.
 //!
 //! Prints a line `name hash` each over semihosting, or by the functions that `page.mjs` lends, in the format of those files, and
@@ -12,25 +12,25 @@
 #[cfg(target_arch = "arm")]
 use cortex_m as _;
 
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod bonds;
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod cloth;
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod contacts;
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod drawing;
 mod expected;
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod hulls;
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod indices;
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod motion;
 #[cfg(target_arch = "wasm32")]
 mod page;
 mod scenes;
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 mod sheets;
 
 #[cfg(target_arch = "wasm32")]
@@ -41,13 +41,13 @@ use static_cell::ConstStaticCell;
 
 /// Fresh memory is all zeros: it lies in .bss and costs no flash.
 static SCENES: ConstStaticCell<scenes::Memory> = ConstStaticCell::new(scenes::Memory::new());
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 static INDICES: ConstStaticCell<indices::Memory> = ConstStaticCell::new(indices::Memory::new());
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 static BONDS: ConstStaticCell<bonds::Memory> = ConstStaticCell::new(bonds::Memory::new());
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 static CONTACTS: ConstStaticCell<contacts::Memory> = ConstStaticCell::new(contacts::Memory::new());
-#[cfg(roomy)]
+#[cfg(feature = "roomy")]
 static MOTION: ConstStaticCell<motion::Memory> = ConstStaticCell::new(motion::Memory::new());
 
 #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
@@ -56,7 +56,7 @@ static MOTION: ConstStaticCell<motion::Memory> = ConstStaticCell::new(motion::Me
 fn main() -> ! {
     #[allow(unused_mut)]
     let mut right = as_expected(scenes::EXPECTED, |out| scenes::run(SCENES.take(), out));
-    #[cfg(roomy)]
+    #[cfg(feature = "roomy")]
     {
         right &= as_expected(indices::EXPECTED, |out| indices::run(INDICES.take(), out));
         right &= as_expected(contacts::EXPECTED, |out| contacts::run(CONTACTS.take(), out));
