@@ -84,6 +84,13 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             ),
             "a.json:cloths[1].thickness: a sheet whose points weigh 0.5555556 kg sinks into it",
         ),
+        (
+            r#"{"forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}], "cloths": [{"fixed": [0, 1, 2, 3],
+                "form": {"sheet": {"corner": [0, 0, 0], "sides": [[0.3, 0, 0], [0, 0, 0.03]], "cells": [10, 1]}},
+                "isotropic": {"young": 7e10, "poisson": 0.35, "thickness": 1e-3, "density": 2700}}]}"#
+                .into(),
+            "a.json:cloths[0]: it is so stiff that what it stretches by as it bends in a sub-step outweighs it: it hangs too far, or shakes; run.substeps of 12 are enough",
+        ),
         (emitter(r#""start": 2, "stop": 1.5"#), "a.json:emitters[0].stop: 1.5 s is not after start, 2 s"),
         (
             r#"{"particles": [{"radius": 0.1, "mass": 1000}, {"radius": 0.1, "position": [1, 0, 0]}], "contacts": {"position": {}}}"#.into(),

@@ -157,7 +157,9 @@ impl SceneFile {
         const SHOWS: f32 = 2.0;
         /// The share of its longer side that bending bears by itself.
         const STANDS: f32 = 0.25;
-        let (params, density, sheet) = (cloth.shell_params()?, cloth.by_area()?, cloth.sheet()?);
+        let (params, sheet) = (cloth.shell_params()?, cloth.sheet()?);
+        let [a, b] = sheet.sides;
+        let density = cloth.by_area().unwrap_or(cloth.mass / length(a.cross(b)));
         let (pull, taken) = (length(self.pull()), self.run.substeps.max(1));
         let longest = sheet.sides.map(length).into_iter().fold(0.0, f32::max);
         let (weight, share) = (density * pull, STANDS * longest);
