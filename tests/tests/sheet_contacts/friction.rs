@@ -173,9 +173,9 @@ fn on_slopes_sheets_lie_still_below_the_angle_of_friction_and_slide_above_it() {
 #[test]
 fn sheets_of_many_cells_slide_whole_in_steps_of_any_length_anywhere() {
     // How far gravity moves a particle in a sub-step is more than rounding by far here, about as much there, and less in the shortest ones.
-    let spans = [(60, 1), (60, 4), (60, 20), (24, 1), (144, 1), (480, 1), (1000, 1)];
+    let spans = [(60, 1), (60, 4), (60, 12), (24, 1), (144, 1), (480, 1), (1000, 1)];
     let cases = spans.into_iter().flat_map(|span| [0.0, 2.0, 18.0, 100.0].map(|far| (span, far)));
-    for (i, ((rate, substeps), far)) in cases.enumerate() {
+    for (i, ((rate, substeps), far)) in cases.enumerate().step_by(every(5)) {
         for method in methods(i) {
             let mu = [0.4, 0.2, 0.6][i % 3];
             let slide = Slide {
@@ -183,7 +183,7 @@ fn sheets_of_many_cells_slide_whole_in_steps_of_any_length_anywhere() {
                 mu,
                 slope: 1.3 * mu,
                 speed: 0.0,
-                time: 0.5,
+                time: if rate > 400 { 0.2 } else { 0.5 },
                 method,
                 substeps,
                 rate,
