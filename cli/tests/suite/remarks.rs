@@ -165,6 +165,23 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
     folder.run("run a.json --steps 2").fine();
 }
 
+#[test]
+fn remarks_on_long_sub_steps_count_those_of_contacts() {
+    let folder = Folder::new();
+    let scene = |contacts: &str| {
+        format!(
+            r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}], {contacts} "boxes": [
+            {{"sides": [0.2, 0.2, 0.2], "mass": 1, "position": [0, 0.1, 0]}},
+            {{"sides": [0.2, 0.2, 0.2], "mass": 10, "position": [0, 0.3, 0]}}]}}"#
+        )
+    };
+    for (contacts, sinks) in [("", true), (r#""contacts": {"position": {"substeps": 4}},"#, false)] {
+        folder.write("a.json", &scene(contacts));
+        let answer = folder.run("run a.json --steps 1");
+        assert_eq!(answer.warnings().iter().any(|warning| warning.contains("sink into")), sinks, "{contacts}");
+    }
+}
+
 /// Whatever it begins with, a scene is remarked on if its capacity is less than all of that, and only then.
 #[test]
 fn a_capacity_below_the_beginning_is_remarked_on() {

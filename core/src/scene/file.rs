@@ -246,6 +246,11 @@ pub struct Camera {
 }
 
 impl SceneFile {
+    /// The number of sub-steps that a step is cut into: those of the run, or of contacts by position where these are more.
+    pub(super) fn substeps(&self) -> u32 {
+        self.run.substeps.max(self.contacts.map_or(1, |response| response.substeps()))
+    }
+
     /// A scene that says nothing.
     #[must_use]
     pub fn new() -> Self {

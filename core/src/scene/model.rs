@@ -123,7 +123,7 @@ impl Model {
                 start.contacts,
             ),
             listed_constraints: file.constraints.len(),
-            substeps: file.run.substeps.max(file.contacts.map_or(1, |response| response.substeps())),
+            substeps: file.substeps(),
             reapers: file.reapers.clone(),
             custom: file.custom.clone(),
             materials: file.materials.clone(),

@@ -105,11 +105,12 @@ impl SceneFile {
         let free = || self.boxes.iter().filter(|boxes| !boxes.fixed && boxes.mass > 0.0);
         let heaviest = free().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
         let lightest = free().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
-        let h = self.run.dt as f32 / self.run.substeps.max(1) as f32;
-        let depth = 0.25 * (heaviest.mass / lightest.mass) * length(self.pull()) * h * h;
+        let (taken, pull) = (self.substeps() as f32, length(self.pull()));
+        let h = self.run.dt as f32 / taken;
+        let depth = 0.25 * (heaviest.mass / lightest.mass) * pull * h * h;
         let room = SHARE * lightest.sides.min_element();
         let sinks = || {
-            let needed = (self.run.substeps.max(1) as f32 * sqrt(depth / room)) as u32;
+            let needed = (taken * sqrt(depth / room)) as u32;
             let needed = needed.saturating_add(1);
             format!(
                 "bodies of {} kg sink into those of {} kg that bear them, and through them at last; run.substeps of {needed} are enough",
@@ -137,7 +138,7 @@ impl SceneFile {
             let h = self.run.dt as f32 / substeps as f32;
             0.25 * (load / point) * pull * h * h
         };
-        let taken = self.run.substeps.max(self.contacts.map_or(1, |response| response.substeps()));
+        let taken = self.substeps();
         let mut sinks = [(body, 1.0, "what weighs"), (sheet, 1.0 / 32.0, "a sheet whose points weigh")].into_iter();
         sinks.find_map(|(load, share, what)| {
             let enough = (taken..=1000).find(|&substeps| !(depth(load, substeps) > share * thickness));
@@ -160,19 +161,19 @@ impl SceneFile {
         let (params, sheet) = (cloth.shell_params()?, cloth.sheet()?);
         let [a, b] = sheet.sides;
         let density = cloth.by_area().unwrap_or(cloth.mass / length(a.cross(b)));
-        let (pull, taken) = (length(self.pull()), self.run.substeps.max(1));
+        let (pull, taken) = (length(self.pull()), self.substeps() as f32);
         let longest = sheet.sides.map(length).into_iter().fold(0.0, f32::max);
         let (weight, share) = (density * pull, STANDS * longest);
         if cloth.fixed.is_empty() || !(params.bending > weight * share * share * share) {
             return None;
         }
         let cells = sheet.sides.into_iter().zip(sheet.cells).map(|(side, cells)| length(side) / cells as f32);
-        let h = self.run.dt as f32 / taken as f32;
+        let h = self.run.dt as f32 / taken;
         let turns = pull * h * h / cells.fold(f32::INFINITY, f32::min);
         let stretch = params.stretch.into_iter().fold(0.0, f32::max);
         let excess = 0.5 * turns * turns * stretch / (SHOWS * weight * longest);
         let shakes = || {
-            let needed = (taken as f32 * sqrt(sqrt(excess))) as u32;
+            let needed = (taken * sqrt(sqrt(excess))) as u32;
             let needed = needed.saturating_add(1);
             format!(
                 "it is so stiff that what it stretches by as it bends in a sub-step outweighs it: it hangs too far, or shakes; run.substeps of {needed} are enough"

@@ -39,7 +39,7 @@ struct Slide {
     /// The angle about the ground's normal, in which the slope goes down \[rad\], and where it is \[sizes\].
     heading: f32,
     far: Vec3,
-    /// How many cells each side of it has.
+    /// The number of cells along each of its sides.
     cells: u32,
 }
 

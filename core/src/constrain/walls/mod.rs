@@ -29,7 +29,7 @@ const RECOVERY: f32 = 0.2;
 /// So many times what rounding may be wrong by has to be missing for a wall to press: what presses less is left to whoever settles velocities, as
 /// rounding would be a large part of it.
 const NOTICED: f32 = 4.0;
-/// How many times faster than what its friction can stop in a sub-step a particle has to slip to be taken for one that does.
+/// The speed from which on a particle is taken for one that slips, as a multiple of what its friction can stop in a sub-step.
 const FAST: f32 = 4.0;
 /// The share of the largest coordinate by which rounding may put a particle off what it touches.
 const ROUNDING: f32 = 4e-6;

@@ -1,4 +1,4 @@
-//! What a sub-step's contacts by position have come to, for reports and for whoever watches.
+//! Reports of contacts by position: the numbers of them, and each meeting for whoever watches.
 
 use super::super::lists::Kept;
 use crate::constrain::Bodies;
