@@ -176,7 +176,7 @@ fn remarks_on_long_sub_steps_count_those_of_contacts() {
         )
     };
     for (contacts, sinks) in [("", true), (r#""contacts": {"position": {"substeps": 4}},"#, false)] {
-        folder.write("a.json", &scene(contacts));
+        folder.write("a.json", scene(contacts));
         let answer = folder.run("run a.json --steps 1");
         assert_eq!(answer.warnings().iter().any(|warning| warning.contains("sink into")), sinks, "{contacts}");
     }
