@@ -247,11 +247,6 @@ impl<'a> CustomColumns<'a> {
 }
 
 impl<'a> CustomColumnsMut<'a> {
-    /// The same, lent on.
-    pub(crate) fn again(&mut self) -> CustomColumnsMut<'_> {
-        CustomColumnsMut { list: self.list, values: self.values, stride: self.stride, len: self.len }
-    }
-
     /// Those of `len` rows, in columns of `stride` values.
     pub(crate) fn new(list: &'a dyn CustomList, values: &'a mut [f32], stride: usize, len: usize) -> Self {
         Self { list, values, stride, len }

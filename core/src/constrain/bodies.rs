@@ -120,34 +120,6 @@ impl Bodies<'_> {
         (number < self.start && self.serial.get(row) == Some(&number) && lives()).then_some(row)
     }
 
-    /// They, with other masses.
-    pub(super) fn weighing<'s>(&'s mut self, mass: &'s [f32], inverse_mass: &'s [f32]) -> Bodies<'s> {
-        Bodies {
-            position: self.position,
-            velocity: self.velocity,
-            before: self.before,
-            radius: self.radius,
-            mass,
-            inverse_mass,
-            elasticity: self.elasticity,
-            material: self.material,
-            custom: self.custom.again(),
-            substep: self.substep,
-            colliders: self.colliders,
-            materials: self.materials,
-            near: self.near.again(),
-            report: self.report,
-            slot: self.slot,
-            serial: self.serial,
-            row_of: self.row_of,
-            pending_death: self.pending_death,
-            start: self.start,
-            marks: self.marks,
-            bound: self.bound,
-            observer: self.observer,
-        }
-    }
-
     /// The way from one row to another \[m\]: the shortest, in a [periodic room](crate::index::Periodic).
     #[must_use]
     pub fn between(&self, from: usize, to: usize) -> Vec3 {
@@ -292,11 +264,6 @@ impl<'a> Near<'a> {
     /// The room that the particles are in, if there is one.
     pub(crate) fn room(&self) -> Option<&'a Room> {
         self.index.room()
-    }
-
-    /// The same, lent on.
-    fn again(&mut self) -> Near<'_> {
-        Near { index: self.index, memory: self.memory, all_pairs: self.all_pairs }
     }
 
     /// Puts points into an index, and calls `then` with a function that visits those within `reach` \[m\] of any place, by their rows: in an order of

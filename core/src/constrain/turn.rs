@@ -201,6 +201,21 @@ fn ridged(b: Mat3) -> Option<[Vec3; 3]> {
     Some(if is_plain { [x, y, z] } else { [x + Vec3::X * THIN, y + Vec3::Y * THIN, z + Vec3::Z * THIN] })
 }
 
+/// x of A x = b, A by its columns and about as large as one; none if A is singular to rounding.
+pub(super) fn across([x, y, z]: [Vec3; 3], b: Vec3) -> Option<Vec3> {
+    let answer = by_cramer([x, y, z], b);
+    (dot(x, y.cross(z)) > THIN * THIN && answer.is_finite()).then_some(answer)
+}
+
+/// The inverse of a symmetric matrix without a way in which it is less than nothing; none if it is singular to rounding.
+pub(super) fn inverse(of: Mat3) -> Option<Mat3> {
+    // In units of the trace nothing underflows.
+    let trace = trace(of);
+    let columns = [of.x_axis, of.y_axis, of.z_axis].map(|column| column / trace);
+    let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| across(columns, axis / trace));
+    Some(Mat3::from_cols(x?, y?, z?))
+}
+
 /// x of A x = b by Cramer's rule, by the columns of A.
 fn by_cramer([x, y, z]: [Vec3; 3], b: Vec3) -> Vec3 {
     let determinant = dot(x, y.cross(z));

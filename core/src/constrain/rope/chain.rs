@@ -1,6 +1,7 @@
 //! The particles and links of a rope, and the parts in which it is where particles have died.
 
 use super::super::Bodies;
+use super::held::Held;
 
 /// The row of a particle that is not there.
 const NOBODY: u32 = u32::MAX;
@@ -21,6 +22,8 @@ pub(super) struct Chain<'m> {
     pub(super) tether: bool,
     /// True if a link joins the last particle to the first.
     pub(super) closed: bool,
+    /// What the rope's first and its last particle are joined to, if any of both is.
+    pub(super) held: &'m [Option<Held>],
 }
 
 impl<'m> Chain<'m> {
@@ -55,10 +58,23 @@ impl<'m> Chain<'m> {
         self.rows.iter().map(|&row| row as usize).enumerate()
     }
 
+    /// What a particle of it is joined to.
+    pub(super) fn held(&self, particle: usize) -> Option<&'m Held> {
+        let number = self.number(particle);
+        let is_last = number + 1 == self.particles;
+        let end = if number == 0 || is_last { self.held.get(usize::from(is_last))? } else { &None };
+        end.as_ref()
+    }
+
     /// Tells whether nobody in it is fixed.
     pub(super) fn is_free(&self, bodies: &Bodies<'_>) -> bool {
-        let weight = |row: u32| bodies.inverse_mass.get(row as usize).copied().unwrap_or(0.0);
-        self.rows.iter().all(|&row| weight(row) > 0.0)
+        self.members().all(|(particle, row)| self.weight(bodies, particle, row) > 0.0)
+    }
+
+    /// The inverse mass of a particle, which is zero as well if it is joined to what nothing moves \[1/kg\].
+    pub(super) fn weight(&self, bodies: &Bodies<'_>, particle: usize, row: usize) -> f32 {
+        let own = bodies.inverse_mass.get(row).copied().unwrap_or(0.0);
+        if self.held(particle).is_some_and(Held::is_fixed) { 0.0 } else { own }
     }
 
     /// Fills rows by the numbers of the rope's particles. Those of a closed one that is broken begin behind a gap, so that no part goes on at its beginning.

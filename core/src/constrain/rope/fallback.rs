@@ -48,16 +48,11 @@ impl Links<'_> {
         let h = bodies.substep.seconds();
         let room = bodies.near.room();
         let way = |row: usize| between(room, bodies.before[0][row], bodies.position[row]);
-        let moves = |row: usize| bodies.inverse_mass[row] > 0.0;
-        let (mut sum, mut mass) = (Vec3::ZERO, 0.0);
-        for (_, row) in self.chain.members() {
-            sum += way(row) * bodies.mass[row];
-            mass += bodies.mass[row];
-        }
-        let is_free = self.chain.members().all(|(_, row)| moves(row));
+        let moves = |particle, row| self.chain.weight(bodies, particle, row) > 0.0;
+        let mean = if self.chain.is_free(bodies) { self.mean(bodies, |_, row| way(row)) } else { None };
         // One that is no number keeps nobody else from being one.
-        let together = Some(sum / mass).filter(|mean| is_free && mean.is_finite()).unwrap_or(Vec3::ZERO);
-        for (particle, row) in self.chain.members().filter(|&(_, row)| moves(row)) {
+        let together = mean.unwrap_or(Vec3::ZERO);
+        for (particle, row) in self.chain.members().filter(|&(particle, row)| moves(particle, row)) {
             self.velocity[particle] = bodies.velocity[row] + (together - way(row)) * (1.0 / h);
         }
         // Nothing pulls that could be taken back.

@@ -96,7 +96,7 @@ impl<'m> Links<'m> {
             let place = between(self.room.as_ref(), self.origin, bodies.position[row]);
             self.place[particle] = place - bodies.velocity[row] * time;
             self.velocity[particle] = bodies.velocity[row];
-            self.weight[particle] = bodies.inverse_mass[row];
+            self.weight[particle] = self.chain.weight(bodies, particle, row);
         }
     }
 
@@ -127,8 +127,7 @@ impl<'m> Links<'m> {
     pub(super) fn line(&self, link: usize) -> Option<Line> {
         let ends = self.chain.ends(link);
         let [p, q] = ends;
-        let weight = self.weight[p] + self.weight[q];
-        if !(weight > 0.0) {
+        if !(self.weight[p] + self.weight[q] > 0.0) {
             return None;
         }
         let from = between(self.room.as_ref(), self.place[q], self.place[p]);
@@ -139,6 +138,8 @@ impl<'m> Links<'m> {
         let first = if before > 0.0 { from / before } else { normal };
         let longer = by.dot(from + apart) / (before + distance);
         let rest = self.chain.length(link);
+        let [one, other] = ends.map(|end| self.own_weight(end, [normal; 2]));
+        let weight = one + other;
         (distance > 0.0 && before + distance < f32::INFINITY).then_some(Line {
             ends,
             distance,
@@ -167,9 +168,29 @@ impl<'m> Links<'m> {
         self.wall(particle).map_or(along, |wall| wall.pass(along))
     }
 
-    /// The inverse mass of a particle, with what brakes it along a wall \[1/kg\].
-    pub(super) fn weight_at(&self, particle: usize) -> f32 {
-        self.wall(particle).map_or(self.weight[particle], |wall| self.weight[particle] / wall.heavier())
+    /// By how much a wall brakes a particle along it, as if it were so many times as heavy.
+    fn braked(&self, particle: usize) -> f32 {
+        self.wall(particle).map_or(1.0, Wall::heavier)
+    }
+
+    /// The inverse mass of a particle, with what it is joined to, for an impulse one way, of which another way counts \[1/kg\].
+    fn own_weight(&self, particle: usize, ways: [Vec3; 2]) -> f32 {
+        self.chain.held(particle).map_or(self.weight[particle], |held| held.weight(ways))
+    }
+
+    /// The same, with what brakes it along a wall \[1/kg\].
+    pub(super) fn weight_at(&self, particle: usize, ways: [Vec3; 2]) -> f32 {
+        self.own_weight(particle, ways) / self.braked(particle)
+    }
+
+    /// How much faster an impulse makes a particle \[m/s\].
+    fn faster(&self, particle: usize, impulse: Vec3) -> Vec3 {
+        self.chain.held(particle).map_or(impulse * self.weight[particle], |held| held.inverse * impulse)
+    }
+
+    /// The same, as far as its wall lets it go, and with what brakes it there.
+    pub(super) fn faster_by_wall(&self, particle: usize, impulse: Vec3) -> Vec3 {
+        self.pass(particle, self.faster(particle, self.pass(particle, impulse))) / self.braked(particle)
     }
 
     /// Lets the walls of all that are near some look at them in the pace, and at by how much links have made them faster; who is told to goes as fast as
@@ -177,7 +198,8 @@ impl<'m> Links<'m> {
     pub(super) fn by_walls(&mut self, look: impl Fn(&mut Wall, Pace, Vec3, Vec3) -> Option<Vec3>) -> bool {
         let mut changed = false;
         for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
-            let (faster, fast) = (self.sum_at(particle, self.pull) * self.weight[particle], self.velocity[particle]);
+            let faster = self.faster(particle, self.sum_at(particle, self.pull));
+            let fast = self.velocity[particle];
             let (time, left, share, number) = (self.time, self.left, self.share, self.chain.number(particle));
             let Some(wall) = self.walls.get_mut(number).filter(|wall| wall.is_near()) else { continue };
             let from = wall.image(self.room.as_ref(), self.origin + self.place[particle]);

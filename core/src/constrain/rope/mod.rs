@@ -3,6 +3,7 @@
 mod bounded;
 mod chain;
 mod fallback;
+mod held;
 mod links;
 mod paces;
 mod solver;
@@ -14,6 +15,7 @@ use super::{Bodies, Constraint, Demand, Share, Words};
 use alloc::boxed::Box;
 use bounded::Bounds;
 use chain::Chain;
+pub(super) use held::Held;
 use links::Links;
 
 /// Links between particles, each to the next, all solved at once: C = |x₁ − x₂| − length of every link.
@@ -137,13 +139,18 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
     }
 
     /// The chain that it is, with the rows of its particles, and the words for its links and for its bounds; none, if these are too few.
-    fn chain_of<'m>(&'m self, bodies: &Bodies<'_>, words: &'m mut [u32]) -> Option<(Chain<'m>, [&'m mut [u32]; 2])> {
+    fn chain_of<'m>(
+        &'m self,
+        bodies: &Bodies<'_>,
+        held: &'m [Option<Held>],
+        words: &'m mut [u32],
+    ) -> Option<(Chain<'m>, [&'m mut [u32]; 2])> {
         let Self { compliance, tether, .. } = *self;
         let (names, lengths) = (self.particles.as_ref(), self.lengths.as_ref());
         let (particles, closed) = (names.len(), self.closed && names.len() > 2);
         let (rows, rest) = words.split_at_mut_checked(particles)?;
         let (links, rest) = rest.split_at_mut_checked(links::WORDS * particles)?;
-        let nobody = Chain { rows: &[], first: 0, particles, lengths, compliance, tether, closed };
+        let nobody = Chain { rows: &[], first: 0, particles, lengths, compliance, tether, closed, held };
         Some((nobody.filled(bodies, names, rows), [links, rest]))
     }
 
@@ -185,11 +192,22 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.close(bodies, share, &[]);
+    }
+
+    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.settle_held(bodies, share, &[]);
+    }
+}
+
+impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
+    /// Brings links to their lengths, while the ends are joined to something, or to nothing.
+    pub(super) fn close(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, held: &[Option<Held>]) {
         let h = bodies.substep.seconds();
         if !(h > 0.0) {
             return;
         }
-        let Some((chain, [own, words])) = self.chain_of(bodies, share.scratch) else { return };
+        let Some((chain, [own, words])) = self.chain_of(bodies, held, share.scratch) else { return };
         if self.compliance > 0.0 {
             // Soft links answer forces by what they do in a whole sub-step, along the directions of its beginning, as a method of first order shows it:
             // with others what hangs still would show speed, and what swings would be driven.
@@ -207,7 +225,8 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         }
     }
 
-    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+    /// Settles velocities, likewise.
+    pub(super) fn settle_held(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, held: &[Option<Held>]) {
         let h = bodies.substep.seconds();
         // In no time nobody has looked for any.
         let walls = if h > 0.0 { walls::of(share.step, self.particles.as_ref().len()) } else { &mut [] };
@@ -218,18 +237,22 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         let brake = self.damping * h;
         let soft = if self.compliance > 0.0 { 1.0 / brake } else { 0.0 };
         if soft < f32::INFINITY {
-            self.brake(bodies, (share.kept.fixed, share.scratch), walls, soft);
+            self.brake(bodies, (share.kept.fixed, share.scratch), walls, (held, soft));
         }
         if is_by_walls {
             walls::follow(walls, bodies);
         }
     }
-}
 
-impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
     /// Takes out of velocities what makes links longer, or shorter, as far as they are softened by so much.
-    fn brake(&self, bodies: &mut Bodies<'_>, (kept, scratch): (&mut [u32], &mut [u32]), walls: &mut [Wall], soft: f32) {
-        let Some((chain, [own, words])) = self.chain_of(bodies, scratch) else { return };
+    fn brake(
+        &self,
+        bodies: &mut Bodies<'_>,
+        (kept, scratch): (&mut [u32], &mut [u32]),
+        walls: &mut [Wall],
+        (held, soft): (&[Option<Held>], f32),
+    ) {
+        let Some((chain, [own, words])) = self.chain_of(bodies, held, scratch) else { return };
         let mut bounds = bounds_of(chain, bodies, walls, (kept, words));
         if let Some(bounds) = &mut bounds {
             bounds.limit_settled(bodies);

@@ -116,7 +116,7 @@ impl Links<'_> {
             let [from, before] = bodies.before.map(|before| before[row]);
             let (way, gained) =
                 (between(self.room.as_ref(), from, bodies.position[row]), bodies.velocity[row] - before);
-            let moves = bodies.inverse_mass[row] > 0.0;
+            let moves = self.chain.weight(bodies, particle, row) > 0.0;
             self.velocity[particle] = if moves { way / h - before - gained * (0.5 + 0.5 / paces) } else { Vec3::ZERO };
         }
     }
@@ -134,7 +134,7 @@ impl Links<'_> {
 
     /// Takes out of places what the method shows beyond velocities: of all, if somebody is fixed, else what lengths show of it.
     pub(super) fn catch_up(&mut self, bodies: &mut Bodies<'_>) {
-        if self.chain.members().any(|(_, row)| !(bodies.inverse_mass[row] > 0.0)) {
+        if !self.chain.is_free(bodies) {
             return self.chain.members().for_each(|(_, row)| bodies.catch_up(row));
         }
         let h = bodies.substep.seconds();
@@ -243,16 +243,12 @@ impl Links<'_> {
         if !self.chain.is_free(bodies) {
             return;
         }
-        let (mut faster, mut farther, mut mass) = (Vec3::ZERO, Vec3::ZERO, 0.0);
-        for (particle, row) in self.chain.members() {
-            let room = self.room.as_ref();
-            faster += (bodies.velocity[row] - self.velocity[particle]) * bodies.mass[row];
-            farther += between(room, self.place[particle], between(room, self.origin, bodies.position[row]))
-                * bodies.mass[row];
-            mass += bodies.mass[row];
-        }
-        let [faster, farther] = [faster, farther].map(|sum| sum / mass);
-        if faster.is_finite() && farther.is_finite() {
+        let room = self.room.as_ref();
+        let faster = self.mean(bodies, |particle, row| bodies.velocity[row] - self.velocity[particle]);
+        let farther = self.mean(bodies, |particle, row| {
+            between(room, self.place[particle], between(room, self.origin, bodies.position[row]))
+        });
+        if let (Some(faster), Some(farther)) = (faster, farther) {
             self.velocity.iter_mut().for_each(|velocity| *velocity += faster);
             self.place.iter_mut().for_each(|place| *place += farther);
         }

@@ -185,14 +185,16 @@ impl Links<'_> {
     /// Minus what λ of a neighbour changes in a link, through the particle that both have.
     fn coupling(&self, link: usize, neighbour: usize, particle: usize) -> f32 {
         let [normal, way] = [self.normal[link], self.way[neighbour]].map(|along| self.pass(particle, along));
-        self.weight_at(particle) * normal.dot(way)
+        self.weight_at(particle, [normal, way]) * normal.dot(way)
     }
 
     /// The inverse masses of a link's ends, as far as walls let these go along it \[1/kg\].
     fn bearing(&self, link: usize) -> [f32; 2] {
         let (normal, way) = (self.normal[link], self.way[link]);
-        let share = |end: usize| self.pass(end, normal).dot(self.pass(end, way)) / normal.dot(way);
-        self.chain.ends(link).map(|end| self.weight_at(end) * share(end))
+        self.chain.ends(link).map(|end| {
+            let [one, other] = [normal, way].map(|along| self.pass(end, along));
+            self.weight_at(end, [one, other]) * (one.dot(other) / normal.dot(way))
+        })
     }
 
     /// What λ of a link changes in itself; one if it is not to act.
@@ -210,7 +212,8 @@ impl Links<'_> {
             return 0.0;
         }
         let pass = |along: Vec3| self.pass(link, along);
-        let (normal, way, weight) = (pass(self.normal[link]), pass(self.way[link]), self.weight_at(link));
+        let (normal, way) = (pass(self.normal[link]), pass(self.way[link]));
+        let weight = self.weight_at(link, [normal, way]);
         let own = normal.dot(way);
         match link.checked_sub(1).filter(|&i| self.normal[i] != Vec3::ZERO) {
             // (n₁·w₁)(n₀·w₀) − (n₁·w₀)(n₀·w₁) = (n₁ × n₀)·(w₁ × w₀).
@@ -295,9 +298,8 @@ impl Links<'_> {
 
     /// By how much the changes of λ move a particle.
     fn movement(&self, particle: usize) -> Option<Vec3> {
-        let weight = self.weight_at(particle);
-        let by = self.pass(particle, self.sum_at(particle, self.change)) * weight;
-        (weight > 0.0 && by.is_finite()).then_some(by)
+        let by = self.faster_by_wall(particle, self.sum_at(particle, self.change));
+        (self.weight[particle] > 0.0 && by.is_finite()).then_some(by)
     }
 
     /// Lets the changes of λ act, which change velocities by what they move over a time \[s\].

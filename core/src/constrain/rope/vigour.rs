@@ -2,9 +2,10 @@
 
 use super::super::Bodies;
 use super::links::Links;
+use crate::constrain::turn::inverse;
 use crate::index::between;
 use crate::math::{max, sqrt};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 impl Links<'_> {
     /// The velocity that all of it has: that of the first who is fixed, else the mean by mass \[m/s\].
@@ -14,15 +15,35 @@ impl Links<'_> {
 
     /// What the first who is fixed has, else the mean by mass.
     fn middle(&self, bodies: &Bodies<'_>, of: impl Fn(usize, usize) -> Vec3) -> Vec3 {
-        let (mut sum, mut mass) = (Vec3::ZERO, 0.0);
-        for (particle, row) in self.chain.members() {
-            if !(self.weight[particle] > 0.0) {
-                return of(particle, row);
-            }
-            sum += of(particle, row) * bodies.mass[row];
-            mass += bodies.mass[row];
+        let fixed = self.chain.members().find(|&(particle, _)| !(self.weight[particle] > 0.0));
+        match fixed {
+            Some((particle, row)) => of(particle, row),
+            None => self.mean(bodies, of).unwrap_or(Vec3::ZERO),
         }
-        if mass > 0.0 { sum / mass } else { Vec3::ZERO }
+    }
+
+    /// The mean by mass of all, and of what its ends are joined to; none if that is no number.
+    pub(super) fn mean(&self, bodies: &Bodies<'_>, of: impl Fn(usize, usize) -> Vec3) -> Option<Vec3> {
+        let (mut sum, mut mass, mut beside) = (Vec3::ZERO, 0.0, Mat3::ZERO);
+        for (particle, row) in self.chain.members() {
+            let of = of(particle, row);
+            sum += of * bodies.mass[row];
+            mass += bodies.mass[row];
+            if let Some(held) = self.chain.held(particle) {
+                sum += held.mass * of;
+                beside += held.mass;
+            }
+        }
+        if beside == Mat3::ZERO {
+            return Some(sum / mass).filter(|mean| mean.is_finite());
+        }
+        inverse(beside + Mat3::from_diagonal(Vec3::splat(mass))).map(|inverse| inverse * sum)
+    }
+
+    /// The product of two velocities, or ways, by the mass of a particle and of what it is joined to.
+    fn product(&self, bodies: &Bodies<'_>, (particle, row): (usize, usize), [one, other]: [Vec3; 2]) -> f32 {
+        let own = one.dot(other) * bodies.mass[row];
+        self.chain.held(particle).map_or(own, |held| own + one.dot(held.mass * other))
     }
 
     /// Twice the kinetic energy beside that, after so much more of what forces do in the sub-step \[J\].
@@ -31,7 +52,8 @@ impl Links<'_> {
         let moving = self.chain.members().filter(|&(particle, _)| self.weight[particle] > 0.0);
         let twice = moving.map(|(particle, row)| {
             let gained = bodies.velocity[row] - bodies.before[1][row];
-            (self.velocity[particle] + gained * share - drift).length_squared() * bodies.mass[row]
+            let beside = self.velocity[particle] + gained * share - drift;
+            self.product(bodies, (particle, row), [beside; 2])
         });
         twice.sum()
     }
@@ -45,9 +67,9 @@ impl Links<'_> {
         let moving = self.chain.members().filter(|&(particle, _)| self.weight[particle] > 0.0);
         let work = moving.map(|(particle, row)| {
             let gained = bodies.velocity[row] - bodies.before[1][row];
-            (way(particle, row) - together).dot(gained) * (bodies.mass[row] / h)
+            self.product(bodies, (particle, row), [way(particle, row) - together, gained])
         });
-        work.sum()
+        work.sum::<f32>() / h
     }
 
     /// The work of those who are fixed on the links that hold them in the pace that has been solved, beside what all of it moves \[J\].

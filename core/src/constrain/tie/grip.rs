@@ -1,6 +1,7 @@
 //! What an impulse between a particle and a place on a body does to all of them.
 
-use super::super::turn::{THIN, solve};
+use super::super::rope::Held;
+use super::super::turn::{across, inverse, solve};
 use crate::math::{dot, largest, length, max, sqrt};
 use glam::{Mat3, Vec3};
 
@@ -108,17 +109,22 @@ impl Grip {
         self.shared * pull + self.turn(pull).cross(self.arm)
     }
 
+    /// How heavy the place is for a particle of such a mass \[kg\] that is joined to it; none if that is no number.
+    pub(super) fn held(&self, own: f32) -> Option<Held> {
+        let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| self.given_way(axis));
+        let way = Mat3::from_cols(x, y, z);
+        if way == Mat3::ZERO {
+            return Some(Held { mass: Mat3::ZERO, inverse: Mat3::ZERO });
+        }
+        // What rounding has left askew would take energy, or give some.
+        let mass = inverse((way + way.transpose()) * 0.5)?;
+        Some(Held { mass, inverse: inverse(mass + Mat3::from_diagonal(Vec3::splat(own)))? })
+    }
+
     /// The impulse that moves the particle against its place by this \[m\], with so much softness \[1/kg\]; none if nothing does.
     pub(super) fn answer(&self, soft: f32, by: Vec3) -> Option<Vec3> {
         let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| axis * (self.own + soft) + self.given_way(axis));
         let scale = columns[0].x + columns[1].y + columns[2].z;
         across(columns.map(|column| column / scale), by / scale)
     }
-}
-
-/// x of A x = b by Cramer's rule, A by its columns and about as large as one.
-pub(super) fn across([x, y, z]: [Vec3; 3], b: Vec3) -> Option<Vec3> {
-    let determinant = dot(x, y.cross(z));
-    let answer = Vec3::new(dot(b, y.cross(z)), dot(b, z.cross(x)), dot(b, x.cross(y))) / determinant;
-    (determinant > THIN * THIN && answer.is_finite()).then_some(answer)
 }

@@ -83,20 +83,20 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
         let Some(tied) = bodies.row_of_start(self.particle) else { return };
         let own = pull * grip.own;
         // Before the particle moves: arms are those of where all were.
-        self.push(bodies, place, grip, [-pull, Vec3::ZERO], |bodies, row, [moved, _]| by(bodies, row, moved));
+        self.push(bodies, place, grip, -pull, &mut by);
         by(bodies, tied, own);
     }
 
-    /// Moves the body's particles by what two impulses at its place do.
+    /// Moves the body's particles by what an impulse at its place does.
     pub(super) fn push(
         &self,
         bodies: &mut Bodies<'_>,
         place: &[u32],
         grip: &Grip,
-        pulls: [Vec3; 2],
-        mut by: impl FnMut(&mut Bodies<'_>, usize, [Vec3; 2]),
+        pull: Vec3,
+        mut by: impl FnMut(&mut Bodies<'_>, usize, Vec3),
     ) {
-        let (back, turns) = (grip.back, pulls.map(|pull| grip.turn(pull)));
+        let (back, turn) = (grip.back, grip.turn(pull));
         let first = self.to.as_ref().first().and_then(|&number| bodies.row_of_start(number));
         let Some(first) = first else { return };
         let origin = bodies.position[first] - bodies.velocity[first] * back;
@@ -106,8 +106,8 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
             let from = bodies.position[row] - bodies.velocity[row] * back;
             let arm = between(bodies.near.room(), origin, from) - grip.center;
             let of = (number, f32::from_bits(weight), bodies.inverse_mass[row]);
-            let moved = [0, 1].map(|i| grip.moved(of, pulls[i], [turns[i], arm]));
-            if moved != [Vec3::ZERO; 2] {
+            let moved = grip.moved(of, pull, [turn, arm]);
+            if moved != Vec3::ZERO {
                 by(bodies, row, moved);
             }
         }

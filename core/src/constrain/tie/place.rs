@@ -1,8 +1,8 @@
 //! The place on a body that a particle is tied to: learning it, and finding it again.
 
 use super::super::Bodies;
-use super::super::turn::outer;
-use super::grip::{Grip, across};
+use super::super::turn::{across, outer};
+use super::grip::Grip;
 use super::{HEAD, Tie};
 use crate::index::between;
 use crate::math::{dot, length, unit};

@@ -1,12 +1,12 @@
 //! Ropes whose ends are tied to other bodies: their direct solution feels how heavy these are.
 
+use super::super::bodies::Change;
 #[cfg(feature = "alloc")]
 use super::super::declared::{Declared, names_twice};
-use super::super::{Bodies, Constraint, Demand, Kept, Rope, Share, Words};
+use super::super::rope::Held;
+use super::super::{Bodies, Constraint, Demand, Kept, Rope, Share};
 use super::Tie;
 use super::grip::Grip;
-use crate::math::{dot, unit};
-use crate::memory::take;
 #[cfg(feature = "alloc")]
 use alloc::boxed::Box;
 use glam::Vec3;
@@ -14,11 +14,9 @@ use glam::Vec3;
 /// A rope of which one end or both are tied to a body, however heavy that is.
 ///
 /// A [`Rope`] and a [`Tie`] behind it are met one after the other, and give way under what is heavier than the rope's end. Here an end that is tied rigidly has, while the rope is
-/// solved, the mass of itself and of the body at its place, along its link: m + 1 / (d · W d). The body gets its share of what the rope does to that,
+/// solved, the mass of itself and of the body at its place, in each direction: m + W⁻¹, where an impulse J moves the place by W J. The body gets its share of what the rope does to that,
 /// with equal impulses at the place, and then the ties are met. Linear and angular momentum are kept as they are by both alone. Soft ties are met behind the rope.
 /// Without ties it is the rope alone.
-///
-/// In each sub-step it copies the masses of all particles once or twice, beside what the rope and the ties take.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -72,21 +70,17 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
         ends.filter_map(|(end, (tie, place))| Some((end, tie.as_ref()?, place)))
     }
 
-    /// The row of a tied end, how much heavier the body at its place makes it, and how it takes its share; none if it is not rigid.
-    fn load(&self, bodies: &Bodies<'_>, end: usize, kept: &[u32], back: f32) -> Option<Load> {
+    /// How a tied end is joined to its body; none if it is not rigidly.
+    fn joint(&self, bodies: &Bodies<'_>, end: usize, kept: &[u32], back: f32) -> Option<Joint> {
         let (_, tie, place) = self.ties(kept).find(|(number, ..)| *number == end)?;
-        let particles = self.rope.particles.as_ref();
-        let next = particles.get(if end == 0 { 1 } else { particles.len().checked_sub(2)? })?;
         let ([row, _], grip) = tie.grip(bodies, place, back)?;
         if tie.compliance > 0.0 || !(grip.own > 0.0) {
             return None;
         }
         // What is a body of its own keeps its form; one of three corners or less is drawn out of it.
         let grip = if tie.to.as_ref().len() > 3 { grip.as_one() } else { grip };
-        let along = unit(bodies.between(row, bodies.row_of_start(*next)?));
-        let heavier = 1.0 / dot(along, grip.given_way(along));
         let was = [bodies.position[row], bodies.velocity[row]];
-        (along != Vec3::ZERO && heavier > 0.0).then_some(Load { end, row, heavier, grip, was })
+        Some(Joint { end, row, held: grip.held(bodies.mass[row])?, grip, was })
     }
 
     fn is_tied(&self) -> bool {
@@ -97,67 +91,63 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
     /// tie brakes it brakes once.
     fn meet(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, rope: Phase<P, L>, tie: TiePhase<T, W>) {
         if !self.is_tied() {
-            return rope(&self.rope, bodies, share);
+            return rope(&self.rope, bodies, share, &[]);
         }
         for (_, own, place) in self.ties(share.kept.fixed).filter(|(_, own, _)| own.compliance == 0.0) {
             let _ = tie(own, bodies, place);
         }
-        self.with_loads(bodies, share, back, rope);
+        self.with_joints(bodies, share, back, rope);
         for (_, own, place) in self.ties(share.kept.fixed) {
             let _ = tie(own, bodies, place);
         }
     }
 
     /// Lets the rope do something while its ends are as heavy as what they are tied to, of which that gets its share.
-    fn with_loads(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, then: Phase<P, L>) {
-        let loads = [0, 1].map(|end| self.load(bodies, end, share.kept.fixed, back));
-        let mut rest = &mut *share.scratch;
-        if loads.iter().all(Option::is_none) {
-            then(&self.rope, bodies, &mut share_of([share.step, rest], share.capacity));
-            return;
-        }
-        let masses: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, bodies.len()));
-        let inverse: &mut [f32] = bytemuck::cast_slice_mut(take(&mut rest, bodies.len()));
-        if inverse.len() < bodies.len() {
-            return;
-        }
-        masses.copy_from_slice(bodies.mass);
-        inverse.copy_from_slice(bodies.inverse_mass);
-        for Load { row, heavier, .. } in loads.iter().flatten() {
-            masses[*row] += heavier;
-            inverse[*row] = 1.0 / masses[*row];
-        }
-        then(&self.rope, &mut bodies.weighing(masses, inverse), &mut share_of([share.step, rest], share.capacity));
-        for Load { end, row, heavier, grip, was } in loads.into_iter().flatten() {
-            let gained = [bodies.position[row] - was[0], bodies.velocity[row] - was[1]].map(|by| by * heavier);
-            let tie = self.ties(share.kept.fixed).find(|(number, ..)| *number == end);
-            if let Some((_, tie, place)) = tie.filter(|_| gained.iter().all(|by| by.is_finite())) {
-                tie.push(bodies, place, &grip, gained, |bodies, row, [by, faster]| {
-                    bodies.shift(row, by);
-                    bodies.velocity[row] += faster - if back > 0.0 { by * (1.0 / back) } else { Vec3::ZERO };
-                });
+    fn with_joints(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, then: Phase<P, L>) {
+        let joints = [0, 1].map(|end| self.joint(bodies, end, share.kept.fixed, back));
+        let held = joints.each_ref().map(|joint| joint.as_ref().map(|joint| joint.held));
+        // The rope has kept nothing of its own.
+        let mut own =
+            Share { kept: Kept::default(), step: share.step, scratch: share.scratch, capacity: share.capacity };
+        then(&self.rope, bodies, &mut own, &held);
+        let joints = || joints.iter().flatten();
+        if back > 0.0 {
+            for Joint { end, row, held, grip, was } in joints() {
+                let moved = held.mass * (bodies.position[*row] - was[0]);
+                self.give(bodies, (*end, share.kept.fixed), (grip, Change::Place), moved);
             }
+        }
+        // What the end has got faster beyond how far it has moved came later: it acts where all are by now, as the forces of links do on particles. All of it at once
+        // where the body was would drive what turns.
+        for Joint { end, row, held, was, .. } in joints() {
+            let moved = if back > 0.0 { (bodies.position[*row] - was[0]) * (1.0 / back) } else { Vec3::ZERO };
+            let faster = held.mass * (bodies.velocity[*row] - was[1] - moved);
+            if let Some(Joint { grip, .. }) = self.joint(bodies, *end, share.kept.fixed, 0.0) {
+                self.give(bodies, (*end, share.kept.fixed), (&grip, Change::Velocity), faster);
+            }
+        }
+    }
+
+    /// Gives the body that an end is tied to what an impulse at the place does.
+    fn give(&self, bodies: &mut Bodies<'_>, (end, kept): (usize, &[u32]), (grip, what): (&Grip, Change), pull: Vec3) {
+        let tie = self.ties(kept).find(|(number, ..)| *number == end);
+        if let Some((_, tie, place)) = tie.filter(|_| pull.is_finite()) {
+            tie.push(bodies, place, grip, pull, |bodies, row, by| bodies.change(what, row, by));
         }
     }
 }
 
 /// What a rope does in a phase.
-type Phase<P, L> = fn(&Rope<P, L>, &mut Bodies<'_>, &mut Share<'_>);
+type Phase<P, L> = fn(&Rope<P, L>, &mut Bodies<'_>, &mut Share<'_>, &[Option<Held>]);
 
 /// What a tie does in a phase.
 type TiePhase<T, W> = fn(&Tie<T, W>, &mut Bodies<'_>, &[u32]) -> Option<()>;
 
-/// A share of which nothing is kept.
-fn share_of<'s>([step, scratch]: [&'s mut [u32]; 2], capacity: usize) -> Share<'s> {
-    Share { kept: Kept::default(), step, scratch, capacity }
-}
-
 /// A tied end of a rope while that is solved.
-struct Load {
+struct Joint {
     end: usize,
     row: usize,
-    /// The mass of the body at its place, along the link \[kg\].
-    heavier: f32,
+    held: Held,
     grip: Grip,
     /// Where the end was before, and how fast.
     was: [Vec3; 2],
@@ -174,10 +164,7 @@ where
         if !self.is_tied() {
             return self.rope.demand();
         }
-        let masses = Words { per_row: 2, fixed: 0 };
-        let rope = self.rope.demand_held();
-        let own = Demand { scratch: rope.scratch.and(masses), ..rope };
-        self.ends.iter().flatten().fold(own, |sum, tie| sum.and(tie.demand()))
+        self.ends.iter().flatten().fold(self.rope.demand_held(), |sum, tie| sum.and(tie.demand()))
     }
 
     fn is_empty(&self) -> bool {
@@ -197,12 +184,12 @@ where
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let h = bodies.substep.seconds();
         if h > 0.0 {
-            self.meet(bodies, share, h, Rope::project, Tie::close);
+            self.meet(bodies, share, h, Rope::close, Tie::close);
         }
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        self.meet(bodies, share, 0.0, Rope::settle, Tie::brake);
+        self.meet(bodies, share, 0.0, Rope::settle_held, Tie::brake);
     }
 }
 
