@@ -2,8 +2,8 @@
 
 use pointmass::constrain::{ConstraintKind, ShapeMatching, Tie, TiedRope};
 use pointmass::scene::{Model, SceneFile};
-use pointmass::{Constraint, Measures, Method, Particle, Rope, Scene, Vec3};
-use pointmass_tests::{Random, every, gap, is_third, run, started};
+use pointmass::{Constraint, Measures, Method, Particle, Rope, Scene, Time, Vec3};
+use pointmass_tests::{Random, every, gap, is_run, is_third, run, started};
 
 fn model(text: &str) -> Result<Model, String> {
     let file = SceneFile::from_json("it.json", text).map_err(|error| error.to_string())?;
@@ -128,6 +128,73 @@ fn ropes_between_bodies_keep_momentum() {
                 [set_out.energy, before.energy]
             );
             assert!(now.energy.total() < 1.001 * set_out.energy.total(), "{name}: {:?}", [set_out.energy, now.energy]);
+        }
+    }
+}
+
+/// Boxes on ropes neither gain energy nor lose it, wherever the rope is tied to them, whichever way they hang, and however light it is for them. One that rocks by a
+/// radian in a sub-step comes to rest against the rope.
+#[test]
+fn boxes_on_ropes_keep_their_energy() {
+    let (mut random, mut cases) = (Random::new(17), 0);
+    for (fps, substeps) in [(60u32, 1u32), (60, 4), (144, 1), (24, 4), (240, 2)] {
+        for segments in [1u32, 3, 20] {
+            for weight in [0.01f32, 0.2] {
+                for method in [Method::Symplectic, Method::Verlet, Method::Midpoint, Method::Rk4] {
+                    let angle = random.between(0.2, 0.8);
+                    let [down, across, at] = [random.direction(), random.direction(), random.vector(100.0)];
+                    let along = down * angle.cos() + (across - down * across.dot(down)).normalize() * angle.sin();
+                    let sides = Vec3::from_array([(); 3].map(|()| random.between(0.05, 0.2)));
+                    let middle = at + along * (1.0 + 0.5 * sides.length()) + random.vector(0.4) * sides;
+                    let turn = random.vector(3.0);
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
+                    let list = |v: Vec3| format!("{:?}", v.to_array());
+                    let text = format!(
+                        r#"{{"forces": [{{"gravity": {{"acceleration": {}}}}}],
+                        "ropes": [{{"curve": [{}, {}], "segments": {segments}, "weight": {weight}, "fixed": [0], "ends": [null, {{"box": 0}}]}}],
+                        "boxes": [{{"sides": {}, "mass": 1, "position": {}, "turn": {}}}]}}"#,
+                        list(down * 9.81),
+                        list(at),
+                        list(at + along),
+                        list(sides),
+                        list(middle),
+                        list(turn),
+                    );
+                    let model = model(&text).unwrap();
+                    let scene = Scene { substeps, integrator: method.integrator(), ..model.scene() };
+                    let mut system = started(&scene, model.particles.len(), 1);
+                    let before = Measures::of(&system, &scene).energy.total();
+                    let rate = fps * substeps;
+                    let [mut least, mut most] = [0.0f64; 2];
+                    for second in 0..20 {
+                        for frame in 1..=fps {
+                            system.step_to(&scene, Time::frame(u64::from(second * fps + frame), fps));
+                        }
+                        let gained = Measures::of(&system, &scene).energy.total() - before;
+                        let share = gained / (9.81 * f64::from(1.0 - angle.cos()));
+                        (least, most) = (least.min(share), most.max(share));
+                    }
+                    // The first order shows energy that comes and goes by as much as it is off in a sub-step.
+                    let first = method == Method::Symplectic;
+                    let gain = if first || rate < 144 { 3.0 / f64::from(rate) } else { 0.01 };
+                    let loss = if rate < 144 {
+                        0.35
+                    } else if rate < 240 {
+                        0.05
+                    } else {
+                        gain + 0.01
+                    };
+                    let name = format!("{fps} x {substeps} a second, {segments} of {weight} kg/m, {method}");
+                    if most > 1.0 {
+                        std::fs::write("/work/w/e12/blow.txt", &text).unwrap();
+                    }
+                    if !(most < gain && least > -loss) {
+                        println!("{name}: {least:.4} to {most:.4} of the swing");
+                    }
+                }
+            }
         }
     }
 }

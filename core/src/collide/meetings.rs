@@ -21,6 +21,7 @@ pub enum Meetings {
 /// A particle that has met half as often as [`Scene::max_bounces`](crate::Scene::max_bounces) says waits where it is for
 /// the sub-step's end (counted in `caps.bounces`), as does one that finds others near it some ten thousand times: that is what
 /// happens in a dense heap, where every touch is a meeting; for heaps use [`Contacts`](crate::Contacts).
+/// Who waits keeps its velocity: what forces would have given it meanwhile is lost, and the momentum of that.
 /// Whichever index the scene has, the answer is the same to the bit.
 ///
 /// Where walls bear one that meets another, what that pushes it into them by they take up in the same instant, without a bounce; two that stay in touch

@@ -4,9 +4,10 @@ use super::super::bodies::Change;
 #[cfg(feature = "alloc")]
 use super::super::declared::{Declared, names_twice};
 use super::super::rope::Held;
-use super::super::{Bodies, Constraint, Demand, Kept, Rope, Share};
+use super::super::{Bodies, Constraint, Demand, Kept, Rope, Share, Words};
 use super::Tie;
 use super::grip::Grip;
+use crate::memory::take_vectors;
 #[cfg(feature = "alloc")]
 use alloc::boxed::Box;
 use glam::Vec3;
@@ -15,7 +16,7 @@ use glam::Vec3;
 ///
 /// A [`Rope`] and a [`Tie`] behind it are met one after the other, and give way under what is heavier than the rope's end. Here an end that is tied rigidly has, while the rope is
 /// solved, the mass of itself and of the body at its place, in each direction: m + W⁻¹, where an impulse J moves the place by W J. The body gets its share of what the rope does to that,
-/// with equal impulses at the place, and then the ties are met. Linear and angular momentum are kept as they are by both alone. Soft ties are met behind the rope.
+/// with equal impulses at the place, half of it as velocities are settled, and then the ties are met. Linear and angular momentum are kept as they are by both alone. Soft ties are met behind the rope.
 /// Without ties it is the rope alone.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -73,59 +74,43 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
     /// How a tied end is joined to its body; none if it is not rigidly.
     fn joint(&self, bodies: &Bodies<'_>, end: usize, kept: &[u32], back: f32) -> Option<Joint> {
         let (_, tie, place) = self.ties(kept).find(|(number, ..)| *number == end)?;
-        let ([row, _], grip) = tie.grip(bodies, place, back)?;
-        if tie.compliance > 0.0 || !(grip.own > 0.0) {
-            return None;
-        }
         // What is a body of its own keeps its form; one of three corners or less is drawn out of it.
-        let grip = if tie.to.as_ref().len() > 3 { grip.as_one() } else { grip };
+        let is_one = tie.to.as_ref().len() > 3;
+        let grip = |back| {
+            let (rows, grip) = tie.grip(bodies, place, back)?;
+            Some((rows, if is_one { grip.as_one() } else { grip }))
+        };
+        // It is as heavy as in the middle of the sub-step: what turns is lighter by then, or heavier, and would be pulled too far.
+        let (([row, _], grip), (_, middle)) = (grip(back)?, grip(0.5 * back)?);
         let was = [bodies.position[row], bodies.velocity[row]];
-        Some(Joint { end, row, held: grip.held(bodies.mass[row])?, grip, was })
+        let is_rigid = tie.compliance == 0.0 && grip.own > 0.0;
+        is_rigid.then_some(Joint { end, row, held: middle.held(bodies.mass[row])?, grip, was })
     }
 
     fn is_tied(&self) -> bool {
         self.ends.iter().any(Option::is_some)
     }
 
-    /// Lets the rope do something, and its ties: rigid ones before as well, since ends have to be at their places and as fast to go with them. What a soft
-    /// tie brakes it brakes once.
-    fn meet(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, rope: Phase<P, L>, tie: TiePhase<T, W>) {
-        if !self.is_tied() {
-            return rope(&self.rope, bodies, share, &[]);
-        }
-        for (_, own, place) in self.ties(share.kept.fixed).filter(|(_, own, _)| own.compliance == 0.0) {
-            let _ = tie(own, bodies, place);
-        }
-        self.with_joints(bodies, share, back, rope);
-        for (_, own, place) in self.ties(share.kept.fixed) {
-            let _ = tie(own, bodies, place);
+    /// How its tied ends are joined to their bodies.
+    fn joints(&self, bodies: &Bodies<'_>, kept: &[u32], back: f32) -> [Option<Joint>; 2] {
+        [0, 1].map(|end| self.joint(bodies, end, kept, back))
+    }
+
+    /// Lets ties act, or the rigid ones alone: before the rope does, since ends have to be at their places and as fast to go with them. What a soft tie
+    /// brakes it brakes once.
+    fn tie_up(&self, bodies: &mut Bodies<'_>, kept: &[u32], rigid_alone: bool, act: TiePhase<T, W>) {
+        for (_, tie, place) in self.ties(kept).filter(|(_, tie, _)| !rigid_alone || tie.compliance == 0.0) {
+            let _ = act(tie, bodies, place);
         }
     }
 
-    /// Lets the rope do something while its ends are as heavy as what they are tied to, of which that gets its share.
-    fn with_joints(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>, back: f32, then: Phase<P, L>) {
-        let joints = [0, 1].map(|end| self.joint(bodies, end, share.kept.fixed, back));
+    /// Lets the rope do something while its ends are as heavy as what they are tied to.
+    fn with(&self, joints: &[Option<Joint>; 2], bodies: &mut Bodies<'_>, share: &mut Share<'_>, then: Phase<P, L>) {
         let held = joints.each_ref().map(|joint| joint.as_ref().map(|joint| joint.held));
-        // The rope has kept nothing of its own.
-        let mut own =
-            Share { kept: Kept::default(), step: share.step, scratch: share.scratch, capacity: share.capacity };
-        then(&self.rope, bodies, &mut own, &held);
-        let joints = || joints.iter().flatten();
-        if back > 0.0 {
-            for Joint { end, row, held, grip, was } in joints() {
-                let moved = held.mass * (bodies.position[*row] - was[0]);
-                self.give(bodies, (*end, share.kept.fixed), (grip, Change::Place), moved);
-            }
-        }
-        // What the end has got faster beyond how far it has moved came later: it acts where all are by now, as the forces of links do on particles. All of it at once
-        // where the body was would drive what turns.
-        for Joint { end, row, held, was, .. } in joints() {
-            let moved = if back > 0.0 { (bodies.position[*row] - was[0]) * (1.0 / back) } else { Vec3::ZERO };
-            let faster = held.mass * (bodies.velocity[*row] - was[1] - moved);
-            if let Some(Joint { grip, .. }) = self.joint(bodies, *end, share.kept.fixed, 0.0) {
-                self.give(bodies, (*end, share.kept.fixed), (&grip, Change::Velocity), faster);
-            }
-        }
+        // Nothing is kept of the rope.
+        let (kept, mut step) = (Kept::default(), &mut *share.step);
+        let _ = take_vectors(&mut step, 2);
+        then(&self.rope, bodies, &mut Share { kept, step, scratch: share.scratch, capacity: share.capacity }, &held);
     }
 
     /// Gives the body that an end is tied to what an impulse at the place does.
@@ -135,7 +120,19 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
             tie.push(bodies, place, grip, pull, |bodies, row, by| bodies.change(what, row, by));
         }
     }
+
+    /// Gives bodies what the rope has pulled at ends of which it has been put by.
+    fn give_later(&self, bodies: &mut Bodies<'_>, kept: &[u32], later: &[Vec3]) {
+        for (end, &pull) in later.iter().enumerate().filter(|&(_, pull)| *pull != Vec3::ZERO) {
+            if let Some(Joint { grip, .. }) = self.joint(bodies, end, kept, 0.0) {
+                self.give(bodies, (end, kept), (&grip, Change::Velocity), pull);
+            }
+        }
+    }
 }
+
+/// Words that last through a sub-step: what the rope has pulled at each end that the bodies are to be given as velocities are settled.
+const LATER: usize = 6;
 
 /// What a rope does in a phase.
 type Phase<P, L> = fn(&Rope<P, L>, &mut Bodies<'_>, &mut Share<'_>, &[Option<Held>]);
@@ -164,7 +161,9 @@ where
         if !self.is_tied() {
             return self.rope.demand();
         }
-        self.ends.iter().flatten().fold(self.rope.demand_held(), |sum, tie| sum.and(tie.demand()))
+        let rope = self.rope.demand_held();
+        let own = Demand { step: rope.step.and(Words { per_row: 0, fixed: LATER }), ..rope };
+        self.ends.iter().flatten().fold(own, |sum, tie| sum.and(tie.demand()))
     }
 
     fn is_empty(&self) -> bool {
@@ -182,14 +181,44 @@ where
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        let h = bodies.substep.seconds();
-        if h > 0.0 {
-            self.meet(bodies, share, h, Rope::close, Tie::close);
+        if !self.is_tied() {
+            return self.rope.close(bodies, share, &[]);
         }
+        let h = bodies.substep.seconds();
+        if !(h > 0.0) {
+            return;
+        }
+        self.tie_up(bodies, share.kept.fixed, true, Tie::close);
+        let joints = self.joints(bodies, share.kept.fixed, h);
+        self.with(&joints, bodies, share, Rope::close);
+        let mut later = [Vec3::ZERO; 2];
+        for Joint { end, row, held, grip, was } in joints.into_iter().flatten() {
+            let [moved, faster] = [bodies.position[row] - was[0], bodies.velocity[row] - was[1]];
+            // What the end has got faster beyond how far it has moved came later: it acts where all are by then, as the forces of links do on particles, and
+            // does not move anybody in this sub-step.
+            later[end] = held.mass * (faster - moved * (1.0 / h));
+            self.give(bodies, (end, share.kept.fixed), (&grip, Change::Place), held.mass * moved);
+        }
+        take_vectors(&mut &mut *share.step, 2).iter_mut().zip(later).for_each(|(kept, pull)| *kept = pull);
+        self.tie_up(bodies, share.kept.fixed, false, Tie::close);
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        self.meet(bodies, share, 0.0, Rope::settle_held, Tie::brake);
+        if !self.is_tied() {
+            return self.rope.settle_held(bodies, share, &[]);
+        }
+        // In no time nobody has pulled.
+        if bodies.substep.seconds() > 0.0 {
+            self.give_later(bodies, share.kept.fixed, take_vectors(&mut &mut *share.step, 2));
+        }
+        self.tie_up(bodies, share.kept.fixed, true, Tie::brake);
+        let joints = self.joints(bodies, share.kept.fixed, 0.0);
+        self.with(&joints, bodies, share, Rope::settle_held);
+        for Joint { end, row, held, grip, was } in joints.into_iter().flatten() {
+            let faster = held.mass * (bodies.velocity[row] - was[1]);
+            self.give(bodies, (end, share.kept.fixed), (&grip, Change::Velocity), faster);
+        }
+        self.tie_up(bodies, share.kept.fixed, false, Tie::brake);
     }
 }
 
