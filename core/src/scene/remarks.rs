@@ -1,10 +1,10 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::{Boxes, Cloth, Cord, Growth, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
+use super::{Body, Boxes, Cloth, Cord, Growth, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::{ForceKind, Friction};
-use crate::math::{length, sqrt};
+use crate::math::{length, max, sqrt};
 use crate::reap::ReaperKind;
 use crate::shape::{Aabb, Shape, Surface};
 use alloc::format;
@@ -59,6 +59,10 @@ impl SceneFile {
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
             add(format_args!("cloths[{i}]"), self.long_for_plate(cloth));
+        }
+        // All such ropes are of one kind to whoever reads it.
+        if let Some((i, remark)) = (0..self.ropes.len()).find_map(|i| Some((i, self.hung_twice(i)?))) {
+            add(format_args!("ropes[{i}].ends"), Some(remark));
         }
         if let Some(Response::Force(penalty)) = self.contacts {
             add(format_args!("contacts.force.friction.static"), odd_friction(penalty.friction));
@@ -180,6 +184,35 @@ impl SceneFile {
             )
         };
         (excess > 1.0).then(shakes)
+    }
+
+    /// A remark on a rope to a body that another rope is tied to as well: they are solved one after the other, and each pulls the body as if it were alone. How
+    /// many sub-steps are enough was measured, for bodies side by side on two ropes, and for those of which one hangs below another and weighs up to a hundred times as much.
+    fn hung_twice(&self, rope: usize) -> Option<String> {
+        /// Segments that a rope may have between two anchors for any sub-steps.
+        const FEW: u32 = 5;
+        let own = &self.ropes[rope];
+        let bodies = |cord: &Cord| cord.ends.into_iter().flatten().filter(|end| matches!(end, Body::Box(_)));
+        let is_shared = |body: Body| self.ropes.iter().flat_map(bodies).filter(|other| *other == body).count() > 1;
+        if !bodies(own).any(is_shared) {
+            return None;
+        }
+        let shared = || self.ropes.iter().filter(|cord| bodies(cord).any(is_shared));
+        let is_chain = shared().any(|cord| bodies(cord).count() > 1);
+        let segments = shared().map(|cord| cord.segments).fold(0, u32::max);
+        if !is_chain && segments <= FEW {
+            return None;
+        }
+        let long: f32 = own.curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
+        // The sub-steps in the time in which a pendulum as long turns by a radian.
+        let each = if is_chain { max(240.0, 14.0 * segments as f32) } else { 10.0 * segments as f32 };
+        let needed = ((self.run.dt as f32 * sqrt(length(self.pull()) / long) * each) as u32).saturating_add(1);
+        let many = || {
+            format!(
+                "it pulls at a body that another rope pulls at too, each as if it were alone: in few sub-steps they throw it about; run.substeps of {needed} are enough"
+            )
+        };
+        (needed > self.substeps()).then(many)
     }
 
     /// A remark on what reaches out of the room through one side and not through the opposite one, where it would come in again.

@@ -7,6 +7,7 @@ use super::super::rope::Held;
 use super::super::{Bodies, Constraint, Demand, Kept, Rope, Share, Words};
 use super::Tie;
 use super::grip::Grip;
+use crate::math::clamp;
 use crate::memory::take_vectors;
 #[cfg(feature = "alloc")]
 use alloc::boxed::Box;
@@ -124,10 +125,27 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
     /// Gives bodies what the rope has pulled at ends of which it has been put by.
     fn give_later(&self, bodies: &mut Bodies<'_>, kept: &[u32], later: &[Vec3]) {
         for (end, &pull) in later.iter().enumerate().filter(|&(_, pull)| *pull != Vec3::ZERO) {
-            if let Some(Joint { grip, .. }) = self.joint(bodies, end, kept, 0.0) {
-                self.give(bodies, (end, kept), (&grip, Change::Velocity), pull);
+            if let Some(Joint { grip, row, .. }) = self.joint(bodies, end, kept, 0.0) {
+                let share =
+                    if self.is_held(bodies) { self.asked(bodies, (end, kept), (&grip, row), pull) } else { 1.0 };
+                self.give(bodies, (end, kept), (&grip, Change::Velocity), pull * share);
             }
         }
+    }
+
+    /// Tells whether one of the rope's particles is fixed: no momentum is to be kept.
+    fn is_held(&self, bodies: &Bodies<'_>) -> bool {
+        let rows = self.rope.particles.as_ref().iter().filter_map(|&number| bodies.row_of_start(number));
+        rows.into_iter().any(|row| bodies.inverse_mass[row] == 0.0)
+    }
+
+    /// The share of a pull, up to all, after which the place goes along it as fast as the end does: another rope may have pulled the body meanwhile, and both would
+    /// drive it to and fro.
+    fn asked(&self, bodies: &Bodies<'_>, (end, kept): (usize, &[u32]), (grip, row): (&Grip, usize), pull: Vec3) -> f32 {
+        let place = self.ties(kept).find(|(number, ..)| *number == end);
+        let parting = place.and_then(|(_, tie, place)| tie.parting_from(bodies, place, row));
+        let share = parting.map_or(1.0, |parting| parting.dot(pull) / pull.dot(grip.given_way(pull)));
+        clamp(share, 0.0, 1.0)
     }
 }
 
