@@ -182,6 +182,29 @@ fn remarks_on_long_sub_steps_count_those_of_contacts() {
     }
 }
 
+/// Balls that meet by impulse and may lie on each other on rigid bodies are remarked on, and a single one is not, nor those that meet by position, or where nothing is rigid.
+#[test]
+fn balls_by_impulse_above_boxes_are_remarked_on() {
+    let folder = Folder::new();
+    let (ball, other) = (r#"{"position": [0, 1, 0], "radius": 0.1}"#, r#"{"position": [0, 2, 0], "radius": 0.1}"#);
+    let (one, two) = (format!("[{ball}]"), format!("[{ball}, {other}]"));
+    let (bodies, none) = (r#"[{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0]}]"#, "[]");
+    for (contacts, particles, boxes, told) in [
+        ("impulse", &two, bodies, true),
+        ("impulse", &one, bodies, false),
+        ("impulse", &two, none, false),
+        ("position", &two, bodies, false),
+    ] {
+        folder.write(
+            "a.json",
+            format!(r#"{{"contacts": {{"{contacts}": {{}}}}, "particles": {particles}, "boxes": {boxes}}}"#),
+        );
+        let answer = folder.run("run a.json --steps 1");
+        let is_told = answer.warnings().iter().any(|warning| warning.contains("pressed into the boxes"));
+        assert_eq!(is_told, told, "{contacts} {particles} {boxes}");
+    }
+}
+
 /// Where two ropes pull at one body, as many sub-steps are named as leave no remark, more for bodies below each other and for ropes of more segments, and none where there is
 /// one rope, or nothing pulls.
 #[test]

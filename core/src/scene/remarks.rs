@@ -55,6 +55,7 @@ impl SceneFile {
             add(format_args!("emitters[{i}].stop"), ended.map(nothing));
         }
         add(format_args!("contacts.position"), self.uneven_balls());
+        add(format_args!("contacts.impulse"), self.pressed_in());
         add(format_args!("boxes"), self.uneven_boxes());
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
@@ -99,6 +100,15 @@ impl SceneFile {
             )
         };
         (most > UNEVEN * least).then(uneven)
+    }
+
+    /// A remark on balls that meet by impulse above rigid bodies, which are met after them: those that lie on each other are pressed into what bears them, whatever the steps.
+    fn pressed_in(&self) -> Option<String> {
+        let Some(Response::Impulse {}) = self.contacts else { return None };
+        let balls = self.particles.iter().filter(|ball| ball.radius > 0.0 && !ball.fixed).count();
+        let born = self.emitters.iter().filter(|emitter| emitter.radius.mean > 0.0 && !emitter.fixed).count();
+        let press = "balls that lie on each other are pressed into the boxes that bear them, and through them; `position` keeps them out";
+        (!self.boxes.is_empty() && balls + 2 * born > 1).then(|| press.into())
     }
 
     /// A remark on bodies that weigh too much for others that they may come to lie on: in a sub-step of h a body sinks into what bears it by the ratio of
