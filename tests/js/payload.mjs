@@ -11,7 +11,8 @@ export function run(pointmass, scenes, meshes) {
   for (const [name, text] of Object.entries(scenes)) {
     const declared = text.startsWith("{");
     const world = new World(text, declared ? files : undefined, declared ? undefined : 40);
-    for (let frame = 1; frame <= (declared ? 30 : 600); frame++) world.stepTo(frame / 60);
+    const frames = declared ? Number(name.split("/")[2] ?? 30) : 600;
+    for (let frame = 1; frame <= frames; frame++) world.stepTo(frame / 60);
     hashes[name] = world.hash();
     world.free();
   }

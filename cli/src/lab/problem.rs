@@ -177,7 +177,8 @@ fn from_file(path: &Path, args: &Lab) -> Outcome<Problem> {
     Ok(Problem {
         name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         about: file.about,
-        capacity: system.capacity(),
+        // Each step and method has a system of its own: where nobody is born, more room would be filled for nothing.
+        capacity: if file.emitters.is_empty() { model.particles.len() } else { system.capacity() },
         seed: system.seed(),
         tuning: model.integrator.tuning,
         duration,
