@@ -3,7 +3,7 @@
 use crate::course;
 use crate::scenes::{BUSY, ONE, SOURCE};
 use crate::tool::{Folder, number};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 
 /// A rope of nine metres between particles of 1 kg, the first fixed, lying flat.
@@ -130,6 +130,40 @@ fn constraints_are_told_and_bound_sub_steps() {
     assert!(folder.run("run few.json --steps 3 --substeps 4").warnings().is_empty());
     let auto = folder.run("run few.json --steps 3 --substeps auto --tolerance 1 --report json").fine().report();
     assert!(number(&auto, "substeps/least") >= (0.01 / (2.0 * enough)).ceil(), "{auto}");
+}
+
+#[test]
+fn piles_of_boxes_sink_by_what_is_told() {
+    let folder = Folder::new();
+    for (count, side) in [(1, 0.1), (3, 0.2), (5, 0.05), (10, 0.2), (14, 0.4)] {
+        let place = |i: u32| side * (f64::from(i) + 0.5);
+        let one = |i: u32| json!({"sides": [side, side, side], "mass": 0.3, "position": [0, place(i), 0]});
+        let scene = json!({
+            "run": {"duration": 4, "dt": 1.0 / 60.0, "substeps": 3},
+            "forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}],
+            "scenery": [{"shape": {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0]}}}],
+            "boxes": (0..count).map(one).collect::<Vec<_>>(),
+        });
+        folder.write("a.json", scene.to_string());
+        let told = number(&check(&folder, "a.json"), "holds/0/owes") * 180f64.powi(-2) * side;
+        assert_eq!(folder.run("run a.json --every 1000000 --out o.csv").code, 0);
+        let sheet = folder.read("o.csv");
+        let heights: Vec<f64> = sheet
+            .lines()
+            .rev()
+            .take(8 * count as usize)
+            .map(|line| line.split(',').nth(4).and_then(|y| y.parse().ok()).expect("a height"))
+            .collect();
+        let mut middles: Vec<f64> = heights.chunks(8).map(|points| points.iter().sum::<f64>() / 8.0).collect();
+        middles.push(-0.5 * side);
+        let most = middles.windows(2).map(|pair| side - (pair[0] - pair[1])).fold(0.0, f64::max);
+        match count {
+            1 => assert!(told == 0.0 && most < 1e-6, "{told} {most}"),
+            // Of more than ten it tells what ten do.
+            14 => assert!(most > told && most < 1.6 * told, "{most} for {told}"),
+            _ => assert!(most > 0.8 * told && most < 1.1 * told, "{count} of {side} m: {most} for {told}"),
+        }
+    }
 }
 
 #[test]
