@@ -19,7 +19,8 @@ pub(crate) const FAULT: f64 = 0.01;
 
 /// The most boxes that a pile is looked at for.
 const PILE: usize = 10;
-/// The share of a box that a pile of ten sinks by from which on tall ones have been seen to fall through themselves.
+/// The share of a box that a pile sinks by from which on it has been seen to fall through itself without friction; with friction from three times
+/// that on.
 const FALLS: f64 = 0.09;
 /// The turn of a box in a sub-step from which on it may be met too late \[rad\].
 const TURN: f64 = 0.35;
@@ -247,7 +248,7 @@ impl Hold {
         let (name, off, now, enough_for) = (self.name(), short(100.0 * self.fault(h)), time(h), time(enough));
         (h > enough * (1.0 + 1e-6)).then(|| match self.pile {
             Some(pile) => {
-                let falls = if self.fault(h) > FALLS { ", and may fall through itself" } else { "" };
+                let falls = if self.fault(h) > FALLS { ", and may fall through itself, without friction first" } else { "" };
                 format!(
                     "in sub-steps of {now} a pile of {pile} of {name} sinks by {off} % of a box{falls}; {enough_for} leave 1 %"
                 )
