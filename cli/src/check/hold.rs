@@ -56,7 +56,7 @@ pub(crate) struct Hold {
     /// Half the least side of boxes \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) half: Option<f64>,
-    /// How many boxes the pile has that `owes` is told of: as many as there are, up to ten; none: there is but one.
+    /// The number of boxes in the pile that `owes` is told of: of all there are, ten at the most; none: there is but one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) pile: Option<usize>,
     /// The number of constraints of that kind that follow the first.

@@ -157,6 +157,12 @@ fn piles_of_boxes_sink_by_what_is_told() {
         let mut middles: Vec<f64> = heights.chunks(8).map(|points| points.iter().sum::<f64>() / 8.0).collect();
         middles.push(-0.5 * side);
         let most = middles.windows(2).map(|pair| side - (pair[0] - pair[1])).fold(0.0, f64::max);
+        let mut coarse = scene.clone();
+        coarse["run"]["substeps"] = json!(1);
+        folder.write("coarse.json", coarse.to_string());
+        let text = folder.run("check coarse.json").stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(text.contains(&format!("a pile of {} sinks", count.min(10))), count > 1, "{text}");
+        assert_eq!(text.contains("may fall through itself"), count == 5, "{text}");
         match count {
             1 => assert!(told == 0.0 && most < 1e-6, "{told} {most}"),
             // Of more than ten it tells what ten do.
