@@ -135,7 +135,7 @@ fn constraints_are_told_and_bound_sub_steps() {
 #[test]
 fn piles_of_boxes_sink_by_what_is_told() {
     let folder = Folder::new();
-    for (count, side) in [(1, 0.1), (3, 0.2), (5, 0.05), (10, 0.2), (14, 0.4)] {
+    for (count, side) in [(1, 0.1), (2, 0.3), (3, 0.2), (5, 0.018), (10, 0.2), (14, 0.4)] {
         let place = |i: u32| side * (f64::from(i) + 0.5);
         let one = |i: u32| json!({"sides": [side, side, side], "mass": 0.3, "position": [0, place(i), 0]});
         let scene = json!({
@@ -167,7 +167,7 @@ fn piles_of_boxes_sink_by_what_is_told() {
             1 => assert!(told == 0.0 && most < 1e-6, "{told} {most}"),
             // Of more than ten it tells what ten do.
             14 => assert!(most > told && most < 1.6 * told, "{most} for {told}"),
-            _ => assert!(most > 0.8 * told && most < 1.1 * told, "{count} of {side} m: {most} for {told}"),
+            _ => assert!(most > 0.9 * told && most < 1.1 * told, "{count} of {side} m: {most} for {told}"),
         }
     }
 }

@@ -3,38 +3,31 @@
 //! Eight times two bodies that have nothing to do with each other go side by side. Which these are makes no difference to any of them: no velocity
 //! is −0 when a sub-step begins ([`Body::gather`](super::body::Body::gather)), so impulses of zero, where others have more points, change no bit.
 
-use super::body::Body;
 use super::moving::Moving;
 use super::order::{Order, is_in_turn, is_scenery};
 use super::pack::Pack;
 use super::touch::Touch;
 use crate::lanes::{ABREAST, Eight, Kernel, load, max};
 
-/// Passes at the most where nothing bounces.
-pub(super) const PASSES: u32 = 4;
+/// Passes at the most.
+const PASSES: u32 = 8;
 
 /// All that touch, and how they are gone over.
 pub(super) struct Passes<'a, 'b> {
-    pub(super) bodies: &'a [Body],
     pub(super) order: &'a mut Order<'b>,
-    /// How often at the most.
-    pub(super) count: u32,
 }
 
 impl Kernel for Passes<'_, '_> {
     type Output = ();
-    /// Goes over all so many times at the most, and over those again whose bodies have been changed since.
+    /// Goes over all, and over those again whose bodies have been changed since.
     #[inline(always)]
     fn run<F: Eight>(mut self, like: F) {
         for pack in self.order.packs.iter_mut() {
             pack.seen.fill(0.0);
         }
         let mut clock = 0.0;
-        for pass in 0..self.count {
+        for _ in 0..PASSES {
             let before = clock;
-            if pass == PASSES {
-                self.leave_out();
-            }
             for colour in self.order.colours() {
                 clock = self.over(like, colour, clock);
             }
@@ -75,19 +68,6 @@ impl Passes<'_, '_> {
             go(like, moving, (&mut packs[number], due), on_scenery, tick);
         }
         last
-    }
-
-    /// Leaves out of the passes to come who does not share in a blow.
-    fn leave_out(&mut self) {
-        let Self { bodies, order, .. } = self;
-        let shares = |number: u32| bodies.get(number as usize).is_some_and(|body| body.bounces != 0);
-        for pack in order.packs.iter_mut() {
-            for lane in 0..pack.len() {
-                if !(shares(pack.bodies[0][lane]) || shares(pack.bodies[1][lane])) {
-                    pack.seen[lane] = f32::INFINITY;
-                }
-            }
-        }
     }
 }
 

@@ -171,7 +171,10 @@ impl Visit<'_> {
                 continue;
             }
             let normal = body.rotation * -out;
-            let is_met = |slot: &Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;
+            // A corner stands on that very face of the scenery, or presses no otherwise.
+            let is_met = |slot: &Manifold| {
+                slot.count > 0 && (dot(slot.normal, contact.normal) > ONE_FACE || dot(slot.normal, normal) > ALIKE)
+            };
             if dot(normal, contact.normal) > 0.0 && !self.slots.iter().any(is_met) {
                 self.put(bodies, &Contact { normal, ..*contact }, on);
             }

@@ -6,15 +6,13 @@ use super::facets::middle;
 use super::manifold::{Manifold, Manifolds};
 use super::moving::{self, Moving};
 use super::order::Order;
-use super::pass::{PASSES, Passes};
+use super::pass::Passes;
 use super::span::Span;
 use super::stand::{Begin, HoldOn, Stand, Tell};
 use crate::lanes::run_abreast;
 use crate::math::{dot, max};
 use glam::Vec3;
 
-/// Passes at the most where anything bounces, for the points of bodies that touch share one blow.
-const BLOWS: u32 = 8;
 /// How fast two come together that may touch within a sub-step of `h` \[s\], driven as they were \[m/s\].
 pub(super) fn meeting(bodies: &[Body], manifold: &Manifold, h: f32) -> Option<f32> {
     let [a, b] = manifold.bodies.map(|number| bodies.get(number as usize));
@@ -42,7 +40,7 @@ pub(super) fn keep_apart(bodies: &mut [Body], manifolds: &Manifolds<'_>, order: 
     run_abreast(Begin { bodies, manifolds, order, span });
     moving::take(order.moving, bodies);
     run_abreast(HoldOn { order });
-    go_over(bodies, order, PASSES);
+    go_over(order);
     moving::tell(order.moving, bodies);
     for pack in order.packs.iter() {
         let pressed = pack.pressed();
@@ -61,7 +59,7 @@ pub(super) fn part(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, order: &m
     bodies.iter_mut().for_each(|body| body.bounces = 0);
     let bounces = run_abreast(Stand { bodies, order, span });
     moving::take(order.moving, bodies);
-    go_over(bodies, order, if bounces { BLOWS } else { PASSES });
+    go_over(order);
     if bounces {
         bound(bodies, order, span);
     }
@@ -69,9 +67,9 @@ pub(super) fn part(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, order: &m
     run_abreast(Tell { manifolds, order });
 }
 
-/// Goes over all so many times at the most.
+/// Goes over all until they part as they shall, or as often as there is time for.
 #[inline(never)]
-fn go_over(bodies: &[Body], order: &mut Order<'_>, count: u32) {
+fn go_over(order: &mut Order<'_>) {
     order.moving.iter_mut().for_each(Moving::begin);
-    run_abreast(Passes { bodies, order, count });
+    run_abreast(Passes { order });
 }
