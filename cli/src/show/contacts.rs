@@ -202,13 +202,19 @@ impl Lines {
         let loose = (0..serial.len()).filter(|&row| weights[row] > 0.0 && !bodies.has(serial[row]));
         let loose = loose.map(|row| {
             let thick = thick.get(&serial[row]).copied().unwrap_or(0.0);
-            (state.position[row], thick.max(state.radius[row]))
+            (state.position[row], state.position[row], thick.max(state.radius[row]))
         });
-        let corners = bodies.standing.iter().flat_map(Standing::corners).map(|corner| (corner, 0.0));
-        for (place, radius) in loose.chain(corners) {
+        let corners = |body: &Standing<'_>| {
+            body.corners().into_iter().map(|corner| (body.center, corner, 0.0)).collect::<Vec<_>>()
+        };
+        for (center, place, radius) in loose.chain(bodies.standing.iter().flat_map(corners)) {
             let mut touched = Vec::new();
             model.colliders.contacts(place, radius + self.slack, state.time, &mut |contact| touched.push(*contact));
-            touched.iter().for_each(|contact| self.push(contact.point, contact.normal, SCENERY));
+            for contact in touched {
+                // A corner that has sunk in a little sees the surface from behind.
+                let is_behind = contact.normal.dot(center - contact.point) < 0.0;
+                self.push(contact.point, if is_behind { -contact.normal } else { contact.normal }, SCENERY);
+            }
         }
     }
 
