@@ -11,10 +11,34 @@ use crate::scene::{InsufficientMemory, Scene};
 use crate::time::Time;
 
 /// The state that a scene acts on, in memory of its owner's choice. An empty one is all zeros.
-#[derive(Clone, Debug)]
+///
+/// A clone is a snapshot: it goes on to the same bits. `clone_from` goes back to one in the memory that there is.
+#[derive(Debug)]
 pub struct System<B> {
     memory: B,
     status: Status,
+}
+
+impl<B: Clone> Clone for System<B> {
+    fn clone(&self) -> Self {
+        Self { memory: self.memory.clone(), status: self.status }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.memory.clone_from(&other.memory);
+        self.status = other.status;
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl System<crate::memory::Heap> {
+    /// A clone.
+    ///
+    /// # Errors
+    /// If there is not enough memory for it.
+    pub fn try_clone(&self) -> Result<Self, alloc::collections::TryReserveError> {
+        Ok(Self { memory: self.memory.try_clone()?, status: self.status })
+    }
 }
 
 impl<B> System<B> {

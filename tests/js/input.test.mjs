@@ -566,3 +566,96 @@ test("what there is to draw is in lists of numbers", () => {
   refuses(() => world.sprites([0, 0, 9], [0, 1]), /^up has to be three finite numbers/);
   world.free();
 });
+
+test("a world goes back to what was saved", () => {
+  for (const name of ["fountain", "fireworks", "dice", "flag"]) {
+    const world = new World(load(name));
+    world.stepTo(0.5);
+    assert.equal(world.advance(world.dt * 2.5).toFixed(3), "0.500");
+    const view = world.positions();
+    const [first, hash] = [world.save(), world.hash()];
+    const ends = [0, 1].map(() => {
+      if (view.length > 0) assert.deepEqual(view.slice(0, 3), world.positions().slice(0, 3));
+      world.spawn({ position: [0, 3, 0], lifetime: 1 });
+      const share = world.advance(world.dt * 3.2);
+      const end = [share, world.count, world.time, world.hash(), world.report(), String(world.trails()), world.save()];
+      world.restore(first);
+      assert.equal(world.hash(), hash, name);
+      return end;
+    });
+    const [one, other] = ends.map((end) => end.pop());
+    assert.deepEqual(ends[0], ends[1], name);
+    assert.ok(other > one && one > first, "no number is given twice");
+    // On to another state, whatever has happened since.
+    world.restart();
+    world.restore(other);
+    assert.equal(world.hash(), ends[1][3]);
+    assert.deepEqual([world.forget(one), world.forget(one), world.forget(99)], [true, false, false]);
+    refuses(() => world.restore(one), /^no state \d+ is saved: save\(\) gives the numbers$/);
+    for (const wrong of [undefined, null, "0", {}, 0n]) {
+      refuses(() => world.restore(wrong), /^a state has to be a/);
+      refuses(() => world.forget(wrong), /^a state has to be a/);
+    }
+    for (const wrong of [-1, 0.5, NaN, 2 ** 32]) refuses(() => world.restore(wrong), /^a state has to be a whole number from 0 to 4294967295, not /);
+    world.restore(first);
+    assert.equal(world.hash(), hash);
+    world.free();
+  }
+  // States take memory until there is none, and are given back.
+  const large = new World({}, null, 4e6);
+  const states = [];
+  refuses(() => { for (;;) states.push(large.save()); }, /^there is not enough memory for one more state of the world$/);
+  assert.ok(states.length > 1 && states.every((state) => large.forget(state)));
+  large.forget(large.save());
+  large.free();
+});
+
+test("blows are told", () => {
+  const gravity = { forces: [{ gravity: { acceleration: [0, -10, 0] } }], run: { dt: 0.01, substeps: 1 } };
+  const ground = { scenery: [{ shape: { plane: { point: [0, 0, 0], normal: [0, 1, 0] } } }] };
+  const ball = (x, y, more) => ({ position: [x, y, 0], radius: 0.1, elasticity: 0.5, ...more });
+  const scene = { ...gravity, ...ground, particles: [ball(0, 5.050125), ball(3, 5.050125, { mass: 2 })] };
+  const [heard, deaf] = [new World(scene), new World(scene)];
+  assert.deepEqual([heard.blows().length, heard.struck().length, heard.missedBlows], [0, 0, 0]);
+  heard.listen();
+  let count = 0;
+  for (let frame = 1; frame <= 120; frame++) {
+    for (const world of [heard, deaf]) world.advance(0.01);
+    const [blows, struck] = [heard.blows(), heard.struck()];
+    assert.deepEqual([blows.length / 12, deaf.blows().length], [struck.length / 2, 0]);
+    if (frame === 100) assert.deepEqual([...struck].toSorted((a, b) => a - b), [0, 1, 2 ** 32 - 1, 2 ** 32 - 1]);
+    for (let i = 0; i < struck.length; i += 2, count++) {
+      // At 9.95 m/s, 0.995 s after the beginning; half of that it keeps.
+      const blow = [...blows.slice(6 * i, 6 * i + 12)];
+      const expected = [3 * struck[i], 0.1, 0, 0, 1, 0, 0, 14.925, 0, 9.95, struck[i] + 1];
+      expected.forEach((number, k) => assert.ok(Math.abs(blow[k] - number) < 1e-3, `${k}: ${blow}`));
+      assert.ok(Math.abs(heard.time - blow[11] - 0.995) < 1e-4, String(blow));
+    }
+  }
+  assert.equal(count, 2);
+  assert.equal(heard.hash(), deaf.hash());
+  // More than there is room for, a speed that nobody has, and nothing any more.
+  for (const [least, most, told, missed] of [[null, 1, 1, 1], [9.9, null, 2, 0], [10.1, 5, 0, 0], [0, 0, 0, 0], [Infinity, 3, 0, 0]]) {
+    heard.restart();
+    heard.listen(least, most);
+    heard.stepTo(0.99);
+    heard.step(0.02);
+    assert.deepEqual([heard.struck().length / 2, heard.missedBlows], [told, most === 0 ? 0 : missed], `${least} ${most}`);
+    heard.stepTo(1.02);
+    assert.deepEqual([heard.blows().length, heard.missedBlows], [0, 0], "each call begins anew");
+  }
+  // Two rigid boxes that meet in the air are told of each other, by their first particles.
+  const boxes = new World({ ...gravity, forces: [], boxes: [0, 1].map((i) => ({ sides: [0.2, 0.2, 0.2], mass: 1, position: [i, 0, 0], velocity: [1 - 2 * i, 0, 0] })) });
+  boxes.listen();
+  let met = [];
+  for (let frame = 1; frame <= 60 && met.length === 0; frame++) {
+    boxes.advance(0.01);
+    met = [...boxes.struck()];
+  }
+  assert.deepEqual(met.toSorted((a, b) => a - b), [0, 0, 8, 8]);
+  assert.ok(Math.abs(boxes.blows()[9] - 2) < 0.01, String(boxes.blows()));
+  for (const wrong of [-1, NaN, "1", {}, 1n]) refuses(() => boxes.listen(wrong), /^the speed of a blow has to be a number, zero or more, not /);
+  for (const wrong of [-1, 0.5, "1", 2 ** 32]) refuses(() => boxes.listen(1, wrong), /^the most blows has to be a whole number from 0 to /);
+  refuses(() => boxes.listen(1, 4e9), /^there is not enough memory for so many blows$/);
+  for (const world of [heard, deaf, boxes]) world.free();
+});

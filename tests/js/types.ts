@@ -20,6 +20,12 @@ export async function main(draw: (positions: Float32Array, count: number) => voi
     const id: number | undefined = world.spawn(drop);
     const gone: boolean = id !== undefined && world.remove(id);
     if (gone) world.restart();
+    const state: number = world.save();
+    world.restore(state);
+    if (world.forget(state)) world.listen();
+    world.listen(0.5, 100);
+    const [blows, struck]: [Float32Array, Uint32Array] = [world.blows(), world.struck()];
+    draw(blows, struck.length + world.missedBlows);
     draw(world.positions(), world.count);
     draw(world.velocities(), world.capacity);
     draw(world.radii(), world.time);
@@ -39,6 +45,8 @@ export async function main(draw: (positions: Float32Array, count: number) => voi
   worlds[0]?.step("1");
   // @ts-expect-error: a particle has no weight.
   worlds[0]?.spawn({ weight: 1 });
+  // @ts-expect-error: a state is a number.
+  worlds[0]?.restore("1");
   // @ts-expect-error: a capacity is a number.
   new World({}, files, "10");
   return version();

@@ -4,8 +4,8 @@ use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::Burst;
 use pointmass::shape::Sphere;
 use pointmass::{
-    Constraint, Emitter, Gravity, Heap, Inline, Method, MutualGravity, Particle, Report, Scene, Size, Storage, System,
-    Time, Varied, Vec3,
+    Constraint, Emitter, Gravity, Heap, Inline, Likeness, Method, MutualGravity, Particle, Report, Scene, Size,
+    Storage, System, Time, Varied, Vec3,
 };
 use pointmass_tests::busy::{SIZE, busy, emitters};
 use pointmass_tests::{config, started};
@@ -83,6 +83,34 @@ fn a_clone_goes_on_alike() {
             assert_eq!(system.step(scene, dt), twin.step(scene, dt));
             assert_eq!(system.hash(), twin.hash());
         }
+    });
+}
+
+/// Whoever goes back to a copy comes to the same end, in the columns that there are.
+#[test]
+fn one_goes_back_to_a_clone() {
+    busy(|scene| {
+        let mut system = started(scene, 30, 1);
+        let run = |system: &mut System<Heap>, frames: std::ops::RangeInclusive<u64>| {
+            for i in frames {
+                system.step_to(scene, Time::frame(i, 60));
+            }
+            (system.hash(), *system.totals())
+        };
+        run(&mut system, 1..=40);
+        let saved = system.try_clone().expect("a little memory");
+        let places = system.particles().position.as_ptr();
+        let end = run(&mut system, 41..=100);
+        assert_ne!(end.0, saved.hash());
+        system.clone_from(&saved);
+        assert_eq!((system.hash(), system.time()), (saved.hash(), saved.time()));
+        assert_eq!(run(&mut system, 41..=100), end);
+        assert_eq!(system.particles().position.as_ptr(), places);
+        // Memory of another size, and without some columns, becomes like it.
+        let small = Size { particles: 3, ..Size::default() };
+        let mut other = System::with(Heap::alike(small, &Likeness::default()).expect("a little memory"));
+        other.clone_from(&saved);
+        assert_eq!(run(&mut other, 41..=100), end);
     });
 }
 

@@ -185,6 +185,36 @@ pub(crate) fn id(id: &JsValue) -> Result<u32, JsError> {
     number.ok_or_else(|| JsError::new(&format!("an id has to be a number out of ids(), not {}", shown(id))))
 }
 
+/// The number of a saved state.
+///
+/// # Errors
+/// If it is no whole number, or too large.
+pub(crate) fn state(state: &JsValue) -> Result<u32, JsError> {
+    let number = whole_number("a state", 0, state)?;
+    number.ok_or_else(|| JsError::new(&format!("a state has to be a number out of save(), not {}", shown(state))))
+}
+
+/// The most blows of a call, if that is said.
+///
+/// # Errors
+/// If it is no whole number, or too large.
+pub(crate) fn blows(most: &JsValue) -> Result<Option<u32>, JsError> {
+    whole_number("the most blows", 0, most)
+}
+
+/// The speed of a blow, if it is said.
+///
+/// # Errors
+/// If it is no number, or below zero.
+pub(crate) fn speed(value: &JsValue) -> Result<Option<f32>, JsError> {
+    if value.is_undefined() || value.is_null() {
+        return Ok(None);
+    }
+    let speed = value.as_f64().map(|speed| speed as f32).filter(|speed| *speed >= 0.0);
+    let refuse = || format!("the speed of a blow has to be a number, zero or more, not {}", shown(value));
+    speed.map(Some).ok_or_else(|| JsError::new(&refuse()))
+}
+
 fn whole_number(what: &str, least: u32, value: &JsValue) -> Result<Option<u32>, JsError> {
     const MOST: u32 = u32::MAX;
     match whole(value, f64::from(MOST)) {

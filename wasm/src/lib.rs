@@ -14,21 +14,25 @@
 //! ```
 
 mod arguments;
+mod blows;
 mod clock;
 mod draw;
 mod files;
 mod memory;
 mod path;
+mod saved;
 mod scene;
 
 pub use files::Files;
 
 use arguments::{capacity, instant, place, seconds, seed, strain};
+use blows::Blows;
 use clock::Clock;
 use js_sys::{Float32Array, Int32Array, JsString, Uint8Array, Uint32Array};
 use pointmass::draw::{Appearance, Knot, Line, Looks, Ring, StrandLight, Trails, View};
 use pointmass::scene::Model;
-use pointmass::{Heap, Id, Likeness, Own, Storage, System, Vec3};
+use pointmass::{Heap, Id, Likeness, Own, Storage, System, Time, Vec3};
+use saved::{Saved, State};
 use scene::Loaded;
 use wasm_bindgen::prelude::*;
 
@@ -75,17 +79,15 @@ pub fn version() -> String {
 #[derive(Debug)]
 pub struct World {
     model: Model,
-    system: System<Heap>,
+    state: State,
+    saved: Saved,
+    blows: Blows,
     seed: u64,
-    clock: Clock,
     warnings: Vec<String>,
     /// The light on strands, for an eye at the origin.
     light: StrandLight,
     /// True for each particle of the start that is drawn as part of something else.
     covered: Vec<bool>,
-    /// The memory of trails, where some material leaves one.
-    rings: Vec<Ring>,
-    knots: Vec<Knot>,
 }
 
 /// The places that are remembered of each trail.
@@ -94,24 +96,34 @@ const KNOTS: usize = 48;
 /// The strain at which lines have their full colours, where nothing is said.
 const FULL_STRAIN: f32 = 0.1;
 
+/// The speed from which on blows are noted \[m/s\], and how many are at the most, where nothing is said.
+const LISTENED: f32 = 0.1;
+const NOTED: u32 = 256;
+
 impl World {
     /// Something of how each of the living looks, as a list for `what`.
     fn appearances<T>(&self, what: &str, of: impl Fn(Appearance) -> T) -> Result<Vec<T>, JsError> {
-        let mut list = memory::reserved(self.system.len(), what)?;
+        let mut list = memory::reserved(self.state.system.len(), what)?;
         let scene = self.model.scene();
-        let state = self.system.state(&scene);
+        let state = self.state.system.state(&scene);
         let mut looks = Looks::of(&state);
-        list.extend((0..self.system.len()).filter_map(|row| looks.appearance(row)).map(of));
+        list.extend((0..self.state.system.len()).filter_map(|row| looks.appearance(row)).map(of));
         Ok(list)
+    }
+
+    /// Makes one step, to an instant.
+    fn go_to(&mut self, end: Time) {
+        self.state.system.step_to_observed(&self.model.scene(), end, self.blows.observer());
+        self.remember();
     }
 
     /// Lets trails remember where everybody is.
     fn remember(&mut self) {
-        if self.rings.is_empty() {
+        if self.state.rings.is_empty() {
             return;
         }
         let scene = self.model.scene();
-        Trails::new(&mut self.rings, &mut self.knots, None).look(&self.system.state(&scene));
+        Trails::new(&mut self.state.rings, &mut self.state.knots, None).look(&self.state.system.state(&scene));
     }
 }
 
@@ -155,7 +167,9 @@ impl World {
         let covered = draw::covered(&model);
         let (seed, light) = (seed.unwrap_or(file.run.seed), file.light_on_strands(Vec3::ZERO));
         let clock = Clock::new(file.run.dt);
-        let mut world = Self { model, system, seed, clock, warnings, light, covered, rings, knots };
+        let state = State { system, clock, rings, knots };
+        let (saved, blows) = (Saved::default(), Blows::default());
+        let mut world = Self { model, state, saved, blows, seed, warnings, light, covered };
         world.restart()?;
         Ok(world)
     }
@@ -166,9 +180,10 @@ impl World {
     /// None that a loaded scene can meet.
     pub fn restart(&mut self) -> Result<(), JsError> {
         memory::room_for_little()?;
-        self.system.start(&self.model.scene(), self.seed)?;
-        self.clock = Clock::new(self.clock.dt);
-        self.rings.fill(Ring::NONE);
+        self.state.system.start(&self.model.scene(), self.seed)?;
+        self.state.clock = Clock::new(self.state.clock.dt);
+        self.state.rings.fill(Ring::NONE);
+        self.blows.clear();
         self.remember();
         Ok(())
     }
@@ -190,13 +205,13 @@ impl World {
         #[wasm_bindgen(unchecked_optional_param_type = "number | null")] most: &JsValue,
     ) -> Result<f64, JsError> {
         let elapsed = seconds("advance", elapsed)?;
-        let most = arguments::most(most)?.unwrap_or_else(|| self.clock.usual());
-        for _ in 0..self.clock.take(elapsed, most) {
-            let end = instant("advance", self.clock.next(self.system.time()))?;
-            self.system.step_to(&self.model.scene(), end);
-            self.remember();
+        let most = arguments::most(most)?.unwrap_or_else(|| self.state.clock.usual());
+        self.blows.clear();
+        for _ in 0..self.state.clock.take(elapsed, most) {
+            let end = instant("advance", self.state.clock.next(self.state.system.time()))?;
+            self.go_to(end);
         }
-        Ok(self.clock.share())
+        Ok(self.state.clock.share())
     }
 
     /// Moves the world on by `seconds` in ONE step of the method, whatever `dt` the scene says.
@@ -208,8 +223,10 @@ impl World {
     /// If that is no finite number, or below zero, or would be beyond the end of time, 2^32 s.
     pub fn step(&mut self, #[wasm_bindgen(unchecked_param_type = "number")] seconds: &JsValue) -> Result<(), JsError> {
         let seconds = self::seconds("step", seconds)?;
-        instant("step", self.system.time().seconds_f64() + seconds)?;
-        self.system.step(&self.model.scene(), instant("step", seconds)?);
+        instant("step", self.state.system.time().seconds_f64() + seconds)?;
+        let dt = instant("step", seconds)?;
+        self.blows.clear();
+        self.state.system.step_observed(&self.model.scene(), dt, self.blows.observer());
         self.remember();
         Ok(())
     }
@@ -226,23 +243,100 @@ impl World {
         #[wasm_bindgen(unchecked_param_type = "number")] seconds: &JsValue,
     ) -> Result<(), JsError> {
         let end = instant("stepTo", self::seconds("stepTo", seconds)?)?;
-        self.system.step_to(&self.model.scene(), end);
-        self.remember();
+        self.blows.clear();
+        self.go_to(end);
         Ok(())
+    }
+
+    /// Saves the world as it is now, to go back to: returns the number of that state, which no other state of this world has.
+    ///
+    /// It takes as much memory again as the world, until `forget` or `free`. What has been put in and taken out, columns that have been written to, and what
+    /// `advance` has left over are part of it. From there the world goes on to the same bits.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn save(&mut self) -> Result<u32, JsError> {
+        self.saved.save(&self.state)
+    }
+
+    /// Goes back to a state, or on to one, by its number out of `save`. It stays saved, and views stay what they are. No memory is asked for.
+    ///
+    /// # Errors
+    /// If no state of that number is saved.
+    pub fn restore(&mut self, #[wasm_bindgen(unchecked_param_type = "number")] state: &JsValue) -> Result<(), JsError> {
+        self.saved.restore(arguments::state(state)?, &mut self.state)?;
+        self.blows.clear();
+        Ok(())
+    }
+
+    /// Gives back the memory of a state, by its number out of `save`; returns whether there was one.
+    ///
+    /// # Errors
+    /// If that is no number that a state can have.
+    pub fn forget(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "number")] state: &JsValue,
+    ) -> Result<bool, JsError> {
+        Ok(self.saved.forget(arguments::state(state)?))
+    }
+
+    /// Notes from now on who is struck: by scenery or by others, `least` m/s or faster, 0.1 by default, along the normal of what it meets. What
+    /// lies still is slower than that.
+    ///
+    /// Each call of `advance`, `step` and `stepTo` begins a new list, of `most` blows at the most, 256 by default; `missedBlows` counts those beyond
+    /// them. With 0 nothing is noted any more, and steps are as fast as before.
+    ///
+    /// # Errors
+    /// If the speed is no number, or below zero, or `most` no whole number, or there is not enough memory.
+    pub fn listen(
+        &mut self,
+        #[wasm_bindgen(unchecked_optional_param_type = "number | null")] least: &JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "number | null")] most: &JsValue,
+    ) -> Result<(), JsError> {
+        let (least, most) = (arguments::speed(least)?, arguments::blows(most)?);
+        self.blows.listen(least.unwrap_or(LISTENED), most.unwrap_or(NOTED))
+    }
+
+    /// The blows of the last call of `advance`, `step` or `stepTo`, after `listen`: 12 numbers each. Where it was \[m\] (x, y, z: the middle of a
+    /// ball, the place on a rigid body), the normal of what it met, toward it (x, y, z), by how much its velocity has changed (x, y, z, m/s), how fast
+    /// the two came together along the normal \[m/s\], its mass \[kg\], and how long before `time` that was \[s\]. A copy.
+    ///
+    /// Of two that meet, each that can move has a blow of its own.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn blows(&self) -> Result<Float32Array, JsError> {
+        memory::floats(&self.blows.numbers(self.state.system.time())?)
+    }
+
+    /// Who was struck, for each of the `blows`: its id, as `ids` has it, and that of whom it met, 4294967295 for scenery. For a rigid body stands
+    /// its first particle. A copy.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn struck(&self) -> Result<Uint32Array, JsError> {
+        memory::words(&self.blows.ids()?)
+    }
+
+    /// The number of blows beyond those that `listen` made room for, in the last call of `advance`, `step` or `stepTo`.
+    #[wasm_bindgen(getter, js_name = missedBlows)]
+    #[must_use]
+    pub fn missed_blows(&self) -> u32 {
+        self.blows.missed()
     }
 
     /// The length of the scene's steps \[s\], `run.dt` there: that of the steps of `advance`.
     #[wasm_bindgen(getter)]
     #[must_use]
     pub fn dt(&self) -> f64 {
-        self.clock.dt
+        self.state.clock.dt
     }
 
     /// The instant it has reached \[s\].
     #[wasm_bindgen(getter)]
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.system.time().seconds_f64()
+        self.state.system.time().seconds_f64()
     }
 
     /// Puts a particle in now: an object like an entry of the scene's list `particles`, read and checked as such. Its columns of a user's own
@@ -261,7 +355,7 @@ impl World {
         for push in &mut self.model.forces.2 {
             push.reach = push.reach.max(2.0 * particle.radius);
         }
-        Ok(self.system.spawn(&particle).ok().map(Id::serial))
+        Ok(self.state.system.spawn(&particle).ok().map(Id::serial))
     }
 
     /// Takes a particle out, by its id out of `ids` or `spawn`; returns whether it was alive. Rows change as when one dies.
@@ -270,47 +364,47 @@ impl World {
     /// If that is no number that an id can have.
     pub fn remove(&mut self, #[wasm_bindgen(unchecked_param_type = "number")] id: &JsValue) -> Result<bool, JsError> {
         let id = arguments::id(id)?;
-        let row = self.system.particles().serial.iter().position(|&serial| serial == id);
-        let id = row.and_then(|row| self.system.id(row));
-        Ok(id.is_some_and(|id| self.system.remove(&self.model.scene(), id)))
+        let row = self.state.system.particles().serial.iter().position(|&serial| serial == id);
+        let id = row.and_then(|row| self.state.system.id(row));
+        Ok(id.is_some_and(|id| self.state.system.remove(&self.model.scene(), id)))
     }
 
     /// Particles alive.
     #[wasm_bindgen(getter)]
     #[must_use]
     pub fn count(&self) -> u32 {
-        self.system.len() as u32
+        self.state.system.len() as u32
     }
 
     /// The number of particles that may live at once.
     #[wasm_bindgen(getter)]
     #[must_use]
     pub fn capacity(&self) -> u32 {
-        self.system.capacity() as u32
+        self.state.system.capacity() as u32
     }
 
     /// Positions \[m\], three numbers a particle: a view onto the module's memory, not a copy. It may be written to.
     ///
-    /// It has room for `capacity` particles; the first `count` are alive, and what is behind them means nothing. `advance`, `step`, `stepTo`
-    /// and `restart` change what it shows and never detach it. All else may make the module's memory grow, lists that are copies, other
+    /// It has room for `capacity` particles; the first `count` are alive, and what is behind them means nothing. `advance`, `step`, `stepTo`,
+    /// `restart` and `restore` change what it shows and never detach it. All else may make the module's memory grow, lists that are copies, other
     /// worlds and files above all: its length is zero then, and it has to be asked for anew. That costs next to nothing, so a loop may do it
     /// every frame. A view does not keep its world: when that is freed, or collected as nobody holds it any more, the view shows whatever
     /// comes to lie there.
     #[must_use]
     pub fn positions(&self) -> Float32Array {
-        view(bytemuck::cast_slice(self.system.memory().columns().position))
+        view(bytemuck::cast_slice(self.state.system.memory().columns().position))
     }
 
     /// Velocities \[m/s\], as `positions`.
     #[must_use]
     pub fn velocities(&self) -> Float32Array {
-        view(bytemuck::cast_slice(self.system.memory().columns().velocity))
+        view(bytemuck::cast_slice(self.state.system.memory().columns().velocity))
     }
 
     /// Radii \[m\], one number a particle, zero for points: a view as `positions`.
     #[must_use]
     pub fn radii(&self) -> Float32Array {
-        view(self.system.memory().columns().radius)
+        view(self.state.system.memory().columns().radius)
     }
 
     /// A column of the scene's list `custom`, one number a particle: a view as `positions`.
@@ -319,7 +413,7 @@ impl World {
     /// If it is no string, or the scene has no column of that name.
     pub fn custom(&self, name: &JsString) -> Result<Float32Array, JsError> {
         let name = files::short("a column", name)?;
-        let (columns, capacity) = (self.system.memory().columns(), self.system.capacity());
+        let (columns, capacity) = (self.state.system.memory().columns(), self.state.system.capacity());
         let number = self.model.custom.iter().position(|custom| custom.name == name);
         let column = number.and_then(|number| columns.kept.get(number * capacity..(number + 1) * capacity));
         let column = column.ok_or_else(|| JsError::new(&format!("the scene has no column \"{name}\" in `custom`")))?;
@@ -331,7 +425,7 @@ impl World {
     /// # Errors
     /// If there is not enough memory.
     pub fn materials(&self) -> Result<Int32Array, JsError> {
-        draw::materials_of(&self.system.state(&self.model.scene()))
+        draw::materials_of(&self.state.system.state(&self.model.scene()))
     }
 
     /// The rows of those that are to be drawn as points or balls: all that can be seen and are not drawn as `sprites`, `shapes`, `boxes`,
@@ -340,8 +434,8 @@ impl World {
     /// # Errors
     /// If there is not enough memory.
     pub fn points(&self) -> Result<Uint32Array, JsError> {
-        let serial = self.system.particles().serial;
-        draw::points_of(&self.system.state(&self.model.scene()), serial, &self.covered)
+        let serial = self.state.system.particles().serial;
+        draw::points_of(&self.state.system.state(&self.model.scene()), serial, &self.covered)
     }
 
     /// Colours of the living as they look now, four bytes a particle: red, green, blue, opacity, by materials and ages. A copy.
@@ -377,7 +471,7 @@ impl World {
     ) -> Result<Float32Array, JsError> {
         let up = if up.is_undefined() || up.is_null() { Vec3::Y } else { place("up", up)? };
         let (view, scene) = (View { eye: place("eye", eye)?, up }, self.model.scene());
-        draw::sprites_of(&self.system.state(&scene), &view)
+        draw::sprites_of(&self.state.system.state(&scene), &view)
     }
 
     /// The living whose material has a shape, 17 numbers each: where the shape's origin is, the images of its three axes \[m\], red, green,
@@ -386,7 +480,7 @@ impl World {
     /// # Errors
     /// If there is not enough memory.
     pub fn shapes(&self) -> Result<Float32Array, JsError> {
-        draw::shapes_of(&self.system.state(&self.model.scene()))
+        draw::shapes_of(&self.state.system.state(&self.model.scene()))
     }
 
     /// The rigid boxes of the scene that can be seen, 17 numbers each: the middle, the ways from there to the middles of three sides \[m\], red,
@@ -395,7 +489,7 @@ impl World {
     /// # Errors
     /// If there is not enough memory.
     pub fn boxes(&self) -> Result<Float32Array, JsError> {
-        draw::boxes_of(&self.system.state(&self.model.scene()), &self.model)
+        draw::boxes_of(&self.state.system.state(&self.model.scene()), &self.model)
     }
 
     /// The surfaces of cloths and of rigid bodies that are no boxes, 30 numbers a triangle, which is seen anticlockwise from outside: for each
@@ -404,7 +498,7 @@ impl World {
     /// # Errors
     /// If there is not enough memory.
     pub fn surfaces(&self) -> Result<Float32Array, JsError> {
-        draw::surfaces_of(&self.system.state(&self.model.scene()), &self.model)
+        draw::surfaces_of(&self.state.system.state(&self.model.scene()), &self.model)
     }
 
     /// The segments of strands, and of the scene's `ropes`, as lines like `springs`, in the scene's light as it is seen from `eye`, each
@@ -417,7 +511,7 @@ impl World {
         #[wasm_bindgen(unchecked_param_type = "ArrayLike<number>")] eye: &JsValue,
     ) -> Result<Float32Array, JsError> {
         let light = StrandLight { eye: place("eye", eye)?, ..self.light };
-        draw::strands_of(&self.system.state(&self.model.scene()), &self.model, &light)
+        draw::strands_of(&self.state.system.state(&self.model.scene()), &self.model, &light)
     }
 
     /// The springs that hold, those of cloths as well, as lines of 16 numbers each: both ends \[m\], the widths there \[m\], zero for about a pixel, and the
@@ -431,7 +525,7 @@ impl World {
         #[wasm_bindgen(unchecked_optional_param_type = "number | null")] full: &JsValue,
     ) -> Result<Float32Array, JsError> {
         let full = strain(full)?.unwrap_or(FULL_STRAIN);
-        draw::springs_of(&self.system.state(&self.model.scene()), full)
+        draw::springs_of(&self.state.system.state(&self.model.scene()), full)
     }
 
     /// The straight links of constraints (chains, bridges, bars), as lines like `springs`, by their strain as those are. Segments of the scene's
@@ -444,7 +538,7 @@ impl World {
         #[wasm_bindgen(unchecked_optional_param_type = "number | null")] full: &JsValue,
     ) -> Result<Float32Array, JsError> {
         let full = strain(full)?.unwrap_or(FULL_STRAIN);
-        draw::links_of(&self.system.state(&self.model.scene()), &self.model, full)
+        draw::links_of(&self.state.system.state(&self.model.scene()), &self.model, full)
     }
 
     /// The trails that particles have left since `restart`, from step to step, as lines like `springs`, each trail from its particle
@@ -453,10 +547,10 @@ impl World {
     /// # Errors
     /// If there is not enough memory.
     pub fn trails(&mut self) -> Result<Float32Array, JsError> {
-        let mut list = memory::filled(Line::NONE, self.knots.len() + self.rings.len(), "the trails")?;
+        let mut list = memory::filled(Line::NONE, self.state.knots.len() + self.state.rings.len(), "the trails")?;
         let scene = self.model.scene();
-        let trails = Trails::new(&mut self.rings, &mut self.knots, None);
-        let (count, _) = trails.lines(&self.system.state(&scene), &mut list);
+        let trails = Trails::new(&mut self.state.rings, &mut self.state.knots, None);
+        let (count, _) = trails.lines(&self.state.system.state(&scene), &mut list);
         draw::lines("the trails", &list[..count])
     }
 
@@ -465,7 +559,7 @@ impl World {
     /// # Errors
     /// If there is not enough memory.
     pub fn ids(&self) -> Result<Uint32Array, JsError> {
-        memory::words(self.system.particles().serial)
+        memory::words(self.state.system.particles().serial)
     }
 
     /// The state's fingerprint, 16 hexadecimal digits: equal on every machine for equal scenes, seeds and steps.
@@ -474,7 +568,7 @@ impl World {
     /// If there is not enough memory.
     pub fn hash(&self) -> Result<String, JsError> {
         memory::room_for_little()?;
-        Ok(format!("{:016x}", self.system.hash()))
+        Ok(format!("{:016x}", self.state.system.hash()))
     }
 
     /// The report of what happened since the beginning, as JSON: counters of births, deaths, hits and bounds met.
@@ -483,7 +577,7 @@ impl World {
     /// If there is not enough memory.
     pub fn report(&self) -> Result<String, JsError> {
         memory::room_for_little()?;
-        Ok(serde_json::to_string(self.system.totals()).unwrap_or_default())
+        Ok(serde_json::to_string(self.state.system.totals()).unwrap_or_default())
     }
 
     /// The remarks that reading the scene gave cause to: on old names, on what can be run but is hardly meant.

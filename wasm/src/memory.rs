@@ -46,7 +46,7 @@ pub(crate) fn room_for_little() -> Result<(), JsError> {
 }
 
 /// The error of what finds no room.
-fn lacking(what: &str) -> JsError {
+pub(crate) fn lacking(what: &str) -> JsError {
     JsError::new(&format!("there is not enough memory for {what}"))
 }
 
@@ -59,6 +59,16 @@ pub(crate) fn reserved<T>(most: usize, what: &str) -> Result<Vec<T>, JsError> {
     list.try_reserve_exact(most).map_err(|_| lacking(what))?;
     room(0, what)?;
     Ok(list)
+}
+
+/// A copy of a list, for `what`.
+///
+/// # Errors
+/// If there is not so much memory.
+pub(crate) fn copied<T: Clone>(list: &[T], what: &str) -> Result<Vec<T>, JsError> {
+    let mut copy = reserved(list.len(), what)?;
+    copy.extend_from_slice(list);
+    Ok(copy)
 }
 
 /// A list of so many equal entries to write over, for `what`.

@@ -110,21 +110,32 @@ fn steps_ask_nothing_of_the_heap_and_give_the_same_bits_on_any_number_of_threads
         let file = read(&path);
         let model = Model::load(&file, &path.to_string_lossy(), &mut Disk).unwrap_or_else(|error| panic!("{error}"));
         let scene = model.scene();
-        let run = |system: &mut System<Heap>| {
-            for frame in 1..=frames {
+        let run = |system: &mut System<Heap>, frames: std::ops::RangeInclusive<u64>| {
+            for frame in frames {
                 system.step_to(&scene, Time::frame(frame, 60));
             }
         };
-        let mut alone = started(&file, &model);
-        let asked = allocation_counter::measure(|| run(&mut alone));
+        let (half, mut alone) = (frames / 2, started(&file, &model));
+        let mut asked = allocation_counter::measure(|| run(&mut alone, 1..=half));
+        let saved = alone.try_clone().expect("there is as much already");
+        let mut ends = [0; 2];
+        for end in &mut ends {
+            // Whoever goes back to halfway comes to the same end, where everything lies already.
+            asked += allocation_counter::measure(|| {
+                alone.clone_from(&saved);
+                run(&mut alone, half + 1..=frames);
+            });
+            *end = alone.hash();
+        }
         assert_eq!(asked.count_total, 0, "{path:?}");
+        assert_eq!(ends[0], ends[1], "{path:?}");
         let size = alone.memory().columns().size();
         for threads in [1, 2, 8] {
             // In memory without the columns that the scene does not need.
             let mut system = System::with(Heap::alike(size, &scene.likeness()).expect("there is as much already"));
             system.start(&scene, file.run.seed).expect("it fits");
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            pool.install(|| run(&mut system));
+            pool.install(|| run(&mut system, 1..=frames));
             assert_eq!(system.hash(), alone.hash(), "{path:?} on {threads} threads");
         }
     }

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use bytemuck::{NoUninit, Pod};
 
 /// A column that may be left out.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 enum Held<T> {
     /// One entry a row.
     Own(Vec<T>),
@@ -29,7 +29,10 @@ macro_rules! heap {
         /// Memory on the heap, asked for once.
         ///
         /// [`alike`](Self::alike) leaves out the columns of what all particles have in common: see there.
-        #[derive(Clone, Debug)]
+        ///
+        /// A copy of a [`System`](crate::System) in it goes on to the same bits. `clone_from` copies another's memory into this one where it lies: where both
+        /// are as large it asks for none.
+        #[derive(Debug)]
         pub struct Heap {
             $($p: Vec<$p_ty>,)+
             $($c: Held<$c_ty>,)+
@@ -123,6 +126,52 @@ macro_rules! heap {
             }
         }
 
+        impl Heap {
+            /// A copy.
+            ///
+            /// # Errors
+            /// If there is not so much memory: all is given back then.
+            pub fn try_clone(&self) -> Result<Self, TryReserveError> {
+                let mut blocks = reserved(self.blocks.len())?;
+                for block in &self.blocks {
+                    blocks.push(copied(block)?);
+                }
+                Ok(Self {
+                    $($p: copied(&self.$p)?,)+
+                    $($c: self.$c.copied()?,)+
+                    $($e: copied(&self.$e)?,)+
+                    $($s: copied(&self.$s)?,)+
+                    $($k: copied(&self.$k)?,)+
+                    $($w: copied(&self.$w)?,)+
+                    blocks,
+                })
+            }
+        }
+
+        impl Clone for Heap {
+            fn clone(&self) -> Self {
+                Self {
+                    $($p: self.$p.clone(),)+
+                    $($c: self.$c.clone(),)+
+                    $($e: self.$e.clone(),)+
+                    $($s: self.$s.clone(),)+
+                    $($k: self.$k.clone(),)+
+                    $($w: self.$w.clone(),)+
+                    blocks: self.blocks.clone(),
+                }
+            }
+
+            fn clone_from(&mut self, other: &Self) {
+                $(self.$p.clone_from(&other.$p);)+
+                $(self.$c.clone_from(&other.$c);)+
+                $(self.$e.clone_from(&other.$e);)+
+                $(self.$s.clone_from(&other.$s);)+
+                $(self.$k.clone_from(&other.$k);)+
+                $(self.$w.clone_from(&other.$w);)+
+                self.blocks.clone_from(&other.blocks);
+            }
+        }
+
         #[cfg(test)]
         impl Heap {
             /// Bytes of its columns and blocks.
@@ -159,7 +208,30 @@ macro_rules! heap {
 }
 columns!(heap);
 
+impl<T: Copy> Clone for Held<T> {
+    fn clone(&self) -> Self {
+        match *self {
+            Self::Own(ref rows) => Self::Own(rows.clone()),
+            Self::Common { block, rows } => Self::Common { block, rows },
+        }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        match (&mut *self, other) {
+            (Self::Own(own), Self::Own(rows)) => own.clone_from(rows),
+            _ => *self = other.clone(),
+        }
+    }
+}
+
 impl<T: Pod + PartialEq> Held<T> {
+    fn copied(&self) -> Result<Self, TryReserveError> {
+        Ok(match *self {
+            Self::Own(ref rows) => Self::Own(copied(rows)?),
+            Self::Common { block, rows } => Self::Common { block, rows },
+        })
+    }
+
     fn rows<'a>(&'a self, blocks: &'a [Vec<u32>]) -> &'a [T] {
         match *self {
             Self::Own(ref rows) => rows,
@@ -210,6 +282,12 @@ impl Blocks {
         self.0[block].1 = self.0[block].1.max(words);
         Ok(Held::Common { block, rows })
     }
+}
+
+fn copied<T: Copy>(rows: &[T]) -> Result<Vec<T>, TryReserveError> {
+    let mut copy = reserved(rows.len())?;
+    copy.extend_from_slice(rows);
+    Ok(copy)
 }
 
 fn reserved<T>(len: usize) -> Result<Vec<T>, TryReserveError> {
