@@ -1,7 +1,7 @@
 //! Blows that JavaScript is told of.
 
 use crate::memory;
-use pointmass::{Attention, Impact, Observer, Time};
+use pointmass::{Attention, Id, Impact, Observer, Time, Vec3};
 use wasm_bindgen::prelude::*;
 
 /// Numbers of a blow.
@@ -55,9 +55,7 @@ impl Blows {
         let mut list = memory::reserved(NUMBERS * self.noted.len(), "the blows")?;
         for blow in &self.noted {
             let ago = now.seconds_f64() - blow.time.seconds_f64();
-            list.extend(
-                [blow.place, blow.normal, blow.after - blow.before].iter().flat_map(|vector| vector.to_array()),
-            );
+            list.extend([blow.place, blow.normal, blow.after - blow.before].iter().flat_map(Vec3::to_array));
             list.extend([blow.closing, blow.mass, ago as f32]);
         }
         Ok(list)
@@ -69,9 +67,7 @@ impl Blows {
     /// If there is not enough memory.
     pub(crate) fn ids(&self) -> Result<Vec<u32>, JsError> {
         let mut list = memory::reserved(2 * self.noted.len(), "the blows")?;
-        list.extend(
-            self.noted.iter().flat_map(|blow| [blow.id.serial(), blow.other.map_or(SCENERY, |other| other.serial())]),
-        );
+        list.extend(self.noted.iter().flat_map(|blow| [blow.id.serial(), blow.other.map_or(SCENERY, Id::serial)]));
         Ok(list)
     }
 
