@@ -40,6 +40,7 @@ mod indices;
 mod integrators;
 mod isotropic_sheets;
 mod ledger;
+mod ledges;
 mod lengths;
 mod likeness;
 mod lives;

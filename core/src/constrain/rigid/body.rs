@@ -4,7 +4,7 @@ use super::super::turn::{Turn, keeping, outer, solve};
 use super::super::{Bodies, CARRIED, SHIFTED};
 use super::RigidBox;
 use super::made::Made;
-use crate::math::{length, max, min, sqrt};
+use crate::math::{dot, length, max, min, sqrt};
 use glam::{Mat3, Vec3};
 
 /// It is not there: its particles are dead or nowhere.
@@ -408,7 +408,8 @@ impl Body {
     }
 
     /// Moves it through the sub-step of `h` \[s\] by its velocity, and turns it so that its angular momentum stays (the discrete
-    /// Moser-Veselov equation, as in [`ShapeMatching`](crate::ShapeMatching)).
+    /// Moser-Veselov equation, as in [`ShapeMatching`](crate::ShapeMatching)). What turns too far for that in one, or is so thin that rounding leaves no
+    /// answer, turns about its angular momentum.
     pub(super) fn go(&mut self, h: f32) {
         if !self.goes() {
             return;
@@ -417,9 +418,14 @@ impl Body {
         let (last, torque) = (Turn(self.turn), self.spin * h);
         if torque != Vec3::ZERO {
             let turn = keeping(last, self.rotation * self.spread, torque, None);
-            self.turn = turn.unwrap_or_else(|| last.on(self.omega * h)).0;
+            self.turn = turn.unwrap_or_else(|| last.on(self.about_momentum() * h)).0;
         }
         self.face();
+    }
+
+    /// How it turns about its angular momentum \[rad/s\], which keeps its energy however far it turns.
+    fn about_momentum(&self) -> Vec3 {
+        self.spin * (dot(self.spin, self.omega) / dot(self.spin, self.spin))
     }
 
     /// Tells whether it can say where its particles are.

@@ -50,9 +50,9 @@ pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
     }
 }
 
-/// Joins bodies that press on each other. Scenery that moves may give them whatever it does.
+/// Joins bodies that press on each other, or did before and have let go. Scenery that moves may give them whatever it does.
 fn join(bodies: &mut [Body], pack: &Pack, on_scenery: bool) {
-    let pressed = pack.pressed();
+    let pressed = pack.pressed() | pack.pressed_before;
     for lane in (0..pack.len().min(ABREAST)).filter(|lane| pressed >> lane & 1 != 0) {
         let [a, b] = [0, 1].map(|side| pack.bodies[side][lane] as usize);
         if on_scenery && pack.is_carried(lane) {

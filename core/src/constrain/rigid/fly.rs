@@ -75,7 +75,8 @@ fn turn<F: Eight>(like: F, bodies: &mut [Body], numbers: &[usize], nobody: &Body
     let rotation = Matrices([Vectors([r, s, t]), Vectors([u, v, w]), Vectors([l, m, n])]);
     let there = mask_of(like, (1 << numbers.len()) - 1);
     let (turn, found) = keeping(last, rotation.times(spread), spin * h, there);
-    let turn = turn.where_(found, last.on(omega * h));
+    // As `Body::about_momentum`.
+    let turn = turn.where_(found, last.on(spin * (spin.dot(omega) / spin.dot(spin)) * h));
     let rotation = turn.matrices();
     let inverse = rotation.times(inertia).times(rotation.transposed());
     let Vectors([x, y, z]) = inverse.of(spin) + Vectors([like.all(0.0); 3]);

@@ -179,9 +179,9 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         let Kept { bodies: all, pairs, scenery, .. } = kept;
         let mut manifolds = Manifolds { pairs: &mut pairs[..len], scenery };
         let mut order = Order::of(all, &mut manifolds, memory);
-        solver::keep_apart(all, &manifolds, &mut order, span);
+        let struck = solver::keep_apart(all, &manifolds, &mut order, span);
         fly::go(all, span.h);
-        solver::part(all, &mut manifolds, &mut order, span);
+        solver::part(all, &mut manifolds, &mut order, (struck, span));
         sleep::feel(all, &pairs[..len], order.numbers, span);
         if bodies.substep.is_last() {
             sleep::settle(bodies, kept);

@@ -62,6 +62,9 @@ pub(super) struct Pack {
     pub(super) pushed: [[u32; ABREAST]; 2],
     /// The tick of the clock of passes at which each was gone over last.
     pub(super) seen: Row,
+    /// A bit for each that pressed at some point before it was gone over, and for each that comes to a blow in the sub-step if it touches.
+    pub(super) pressed_before: u32,
+    pub(super) blows: u32,
     /// The number of points of each.
     pub(super) points: Row,
     /// The normal, and two directions across it, in the world.

@@ -49,13 +49,13 @@ pub(super) fn meet(
     }
     let about = |middle: Vec3, reach: f32| Aabb { min: middle - reach, max: middle + reach };
     let around = |reach: f32| about(body.middle(), reach + length(body.half));
-    let free = 0.5 * body.radius;
+    let reach = 2.0 * (small + way);
+    let free = max(0.5 * body.radius, reach);
     if bodies.colliders.is_empty() || !bodies.colliders.may_touch(&around(free)) {
         clear(body, slots);
         body.spare = free - way;
         return;
     }
-    let reach = 2.0 * (small + way);
     if !bodies.colliders.may_touch(&around(reach)) {
         clear(body, slots);
         body.spare = small;
@@ -122,7 +122,7 @@ impl Visit<'_> {
     /// Looks around a corner.
     fn corner(&mut self, bodies: &mut Bodies<'_>, place: Vec3) {
         let (middle, at, colliders) = (self.form.middle(self.body), bodies.substep.during[0], bodies.colliders);
-        let mut point = self.body.point(place);
+        let point = self.body.point(place);
         let around = Aabb { min: middle.min(point) - self.reach, max: middle.max(point) + self.reach };
         if !colliders.may_touch(&around) {
             return;
@@ -130,7 +130,7 @@ impl Visit<'_> {
         let path = Segment { from: middle, to: point, radius: 0.0, during: [at, at] };
         if let Some(hit) = colliders.first_hit(&path) {
             let met = path.at(hit.time);
-            let contact = Contact {
+            let floor = Contact {
                 point: met,
                 normal: hit.normal,
                 distance: 0.0,
@@ -138,19 +138,50 @@ impl Visit<'_> {
                 velocity: hit.velocity,
                 material: hit.material,
             };
-            self.put(bodies, &contact, place);
+            self.put(bodies, &floor, place);
             // From before it other faces are seen.
-            point = path.at(0.9 * hit.time);
+            return self.beside(bodies, (place, path.at(0.9 * hit.time)), &floor);
         }
-        let reach = self.reach + length(point - path.to);
-        let mut others = heapless::Vec::<Contact, 8>::new();
-        let mut left_out = 0;
-        colliders.contacts(point, reach, at, &mut |contact| left_out += u64::from(others.push(*contact).is_err()));
+        let (mut floor, mut count) = (None::<Contact>, 0);
+        colliders.contacts(point, self.reach, at, &mut |contact| {
+            count += 1;
+            if floor.is_none_or(|floor| contact.distance < floor.distance) {
+                floor = Some(*contact);
+            }
+        });
+        let Some(floor) = floor else { return };
+        self.put_near(bodies, &floor, place);
+        if count > 1 {
+            self.beside(bodies, (place, point + floor.normal * (0.5 * self.reach)), &floor);
+        }
+    }
+
+    /// Looks for other faces around a corner that a floor is next to, from somewhat above that: what rises no higher than it is a seam or an edge of the
+    /// floor itself, on which nothing catches.
+    fn beside(&mut self, bodies: &mut Bodies<'_>, (place, from): (Vec3, Vec3), floor: &Contact) {
+        let reach = self.reach + length(from - self.body.point(place));
+        let (mut others, mut left_out, level) = (heapless::Vec::<Contact, 8>::new(), 0, self.level());
+        bodies.colliders.contacts(from, reach, bodies.substep.during[0], &mut |contact| {
+            let rises = dot(floor.normal, contact.point - floor.point);
+            if dot(floor.normal, contact.normal) > ONE_FACE || rises.abs() > level {
+                left_out += u64::from(others.push(*contact).is_err());
+            }
+        });
         bodies.report.caps.contacts += left_out;
         for contact in &others {
-            if dot(contact.normal, path.to - contact.point) <= self.reach {
-                self.put(bodies, contact, place);
-            }
+            self.put_near(bodies, contact, place);
+        }
+    }
+
+    /// Two places are level that are no farther apart than this \[m\].
+    fn level(&self) -> f32 {
+        0.25 * self.body.small()
+    }
+
+    /// Adds a place if it is within reach.
+    fn put_near(&mut self, bodies: &mut Bodies<'_>, contact: &Contact, place: Vec3) {
+        if dot(contact.normal, self.body.point(place) - contact.point) <= self.reach {
+            self.put(bodies, contact, place);
         }
     }
 
@@ -171,12 +202,54 @@ impl Visit<'_> {
                 continue;
             }
             let normal = body.rotation * -out;
-            // A corner stands on that very face of the scenery, or presses no otherwise.
-            let is_met = |slot: &Manifold| {
-                slot.count > 0 && (dot(slot.normal, contact.normal) > ONE_FACE || dot(slot.normal, normal) > ALIKE)
-            };
-            if dot(normal, contact.normal) > 0.0 && !self.slots.iter().any(is_met) {
+            if dot(normal, contact.normal) > 0.0
+                && let Some(normal) = self.support(contact, normal)
+            {
                 self.put(bodies, &Contact { normal, ..*contact }, on);
+                self.rims(bodies, normal, [on, out]);
+            }
+        }
+    }
+
+    /// The normal along which a place of the scenery presses on a face of the body; none, if corners do all that it would.
+    fn support(&self, contact: &Contact, normal: Vec3) -> Option<Vec3> {
+        let mut slots = self.slots.iter().filter(|slot| slot.count > 0);
+        if let Some(slot) = slots.clone().find(|slot| dot(slot.normal, normal) > ALIKE) {
+            // Who stands on fewer feet may hang over an edge.
+            return ((slot.count as usize) < POINTS).then_some(slot.normal);
+        }
+        // Corners stand on that very face, or on one that ends there.
+        let is_level =
+            |slot: &Manifold| dot(slot.normal, contact.point - slot.points[0].places[0]).abs() <= self.level();
+        let is_met = slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE || is_level(slot));
+        (!is_met).then_some(normal)
+    }
+
+    /// Looks for further places of the scenery on a face of the body, with a place in it and its normal: those nearest to the body's corners. What hangs over
+    /// an edge lies on that from one end to the other.
+    fn rims(&mut self, bodies: &mut Bodies<'_>, normal: Vec3, [inside, out]: [Vec3; 2]) {
+        let (body, at) = (self.body, bodies.substep.during[0]);
+        let far = 2.0 * length(self.form.half(body));
+        for corner in 0..self.form.corners() {
+            let corner = self.form.corner(body, corner);
+            // Corners of other faces see what is farther from this one, and those that lie on something see that.
+            let lies = self.slots.iter().flat_map(Manifold::points).any(|point| point.places[1] == corner);
+            if lies || dot(corner - inside, out).abs() > self.reach {
+                continue;
+            }
+            // From within the body walls beside it are met higher up.
+            let from = body.point(corner - out * (2.0 * self.reach));
+            let mut near = heapless::Vec::<Contact, 8>::new();
+            bodies.colliders.contacts(from, far, at, &mut |contact| {
+                let _ = near.push(*contact);
+            });
+            for contact in &near {
+                let place = body.place(contact.point);
+                let above = dot(place - inside, out);
+                let on = place - out * above;
+                if above.abs() <= self.reach && self.form.nearest(body, on).2 <= self.level() {
+                    self.put(bodies, &Contact { normal, ..*contact }, on);
+                }
             }
         }
     }

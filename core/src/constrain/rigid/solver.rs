@@ -13,6 +13,9 @@ use crate::lanes::run_abreast;
 use crate::math::{dot, max};
 use glam::Vec3;
 
+/// The square of an angle by which who turns in a sub-step has turned far.
+const FAR: f32 = 0.1;
+
 /// How fast two come together that may touch within a sub-step of `h` \[s\], driven as they were \[m/s\].
 pub(super) fn meeting(bodies: &[Body], manifold: &Manifold, h: f32) -> Option<f32> {
     let [a, b] = manifold.bodies.map(|number| bodies.get(number as usize));
@@ -35,12 +38,20 @@ pub(super) fn meeting(bodies: &[Body], manifold: &Manifold, h: f32) -> Option<f3
     fastest
 }
 
-/// Keeps all from passing into each other within the sub-step, by velocities, before they go: with what held them in the last one to begin with.
-pub(super) fn keep_apart(bodies: &mut [Body], manifolds: &Manifolds<'_>, order: &mut Order<'_>, span: Span) {
+/// Keeps all from passing into each other within the sub-step, by velocities, before they go: with what held them in the last one to begin with. Tells
+/// whether any come to blows.
+pub(super) fn keep_apart(bodies: &mut [Body], manifolds: &Manifolds<'_>, order: &mut Order<'_>, span: Span) -> bool {
     run_abreast(Begin { bodies, manifolds, order, span });
     moving::take(order.moving, bodies);
+    if order.packs.iter().any(|pack| pack.blows != 0) {
+        order.packs.iter_mut().for_each(|pack| pack.pressed_before = pack.pressed());
+    }
     run_abreast(HoldOn { order });
     go_over(order);
+    let struck = strike(bodies, order);
+    if struck {
+        bound(bodies, order, span);
+    }
     moving::tell(order.moving, bodies);
     for pack in order.packs.iter() {
         let pressed = pack.pressed();
@@ -52,13 +63,51 @@ pub(super) fn keep_apart(bodies: &mut [Body], manifolds: &Manifolds<'_>, order: 
             }
         }
     }
+    struck
 }
 
-/// Lets all part as they shall, when they have gone: what overlaps is no reason to, elasticity is. Notes what they have done.
-pub(super) fn part(bodies: &mut [Body], manifolds: &mut Manifolds<'_>, order: &mut Order<'_>, span: Span) {
+/// Marks those that have come to blows; tells whether any have.
+fn strike(bodies: &mut [Body], order: &Order<'_>) -> bool {
     bodies.iter_mut().for_each(|body| body.bounces = 0);
-    let bounces = run_abreast(Stand { bodies, order, span });
+    let mut struck = false;
+    for pack in order.packs.iter().filter(|pack| pack.blows != 0) {
+        let blows = pack.blows & pack.pressed();
+        struck |= blows != 0;
+        for lane in (0..pack.len()).filter(|lane| blows >> lane & 1 != 0) {
+            for numbers in &pack.bodies {
+                if let Some(body) = bodies.get_mut(numbers[lane] as usize) {
+                    body.bounces = u32::from(body.moves());
+                }
+            }
+        }
+    }
+    struck
+}
+
+/// Marks those that have turned far in the sub-step; tells whether any have. What impulses do to them is known of where they were, so that passes may
+/// give energy.
+fn whirl(bodies: &mut [Body], span: Span) -> bool {
+    let mut whirls = false;
+    for body in bodies.iter_mut().filter(|body| body.moves() && body.omega.dot(body.omega) * (span.h * span.h) > FAR) {
+        (body.bounces, whirls) = (1, true);
+    }
+    whirls
+}
+
+/// Lets all part as they shall, when they have gone: what overlaps is no reason to, elasticity is. Notes what they have done. Some of
+/// them may have been `struck` before they went.
+pub(super) fn part(
+    bodies: &mut [Body],
+    manifolds: &mut Manifolds<'_>,
+    order: &mut Order<'_>,
+    (struck, span): (bool, Span),
+) {
+    let whirls = whirl(bodies, span);
+    let bounces = run_abreast(Stand { bodies, order, span }) | struck | whirls;
     moving::take(order.moving, bodies);
+    if bounces {
+        order.packs.iter_mut().for_each(|pack| pack.pressed_before = pack.pressed());
+    }
     go_over(order);
     if bounces {
         bound(bodies, order, span);

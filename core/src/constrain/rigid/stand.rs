@@ -202,11 +202,13 @@ impl<F: Eight> Pair<F> {
         // What forces make of the speed of either in a sub-step.
         let driven = max(max(like.all(0.0), a.gained()), b.gained());
         let holds = like.all(HOLDS) * grip;
+        pack.blows = 0;
         for i in pack.numbers() {
             let kept = self.let_slide(Kept::of(like, all, i), normal, holds);
             let stance = self.stance(normal, kept.places);
             self.weigh(pack, i, (&stance, &kept), [along[0], along[1], normal], span);
-            self.expect(pack, i, (&stance, &kept), (normal, along), [driven, elasticity], span);
+            let is_blow = self.expect(pack, i, (&stance, &kept), (normal, along), [driven, elasticity], span);
+            pack.blows |= (is_blow & pack.is_there(like, i)).to_bitmask();
         }
     }
 
@@ -256,7 +258,8 @@ impl<F: Eight> Pair<F> {
     }
 
     /// Says how fast two that come together shall part: the elastic answer to the speed at which they meet, u² = u₀² + 2 a s over the gap s, so that
-    /// a bounce neither gains nor loses by when in the sub-step it happens. Where it would be over within a part of the step, they stay together.
+    /// a bounce neither gains nor loses by when in the sub-step it happens. Where it would be over within a part of the step, they stay together. Returns
+    /// where they come to a blow.
     #[inline(always)]
     fn expect(
         &self,
@@ -266,7 +269,7 @@ impl<F: Eight> Pair<F> {
         (normal, along): (Vectors<F>, [Vectors<F>; 2]),
         [driven, elasticity]: [F; 2],
         span: Span,
-    ) {
+    ) -> F {
         let &Stance { arms, gap, .. } = stance;
         let (zero, two, h) = (gap.all(0.0), gap.all(2.0), gap.all(span.h));
         let before = negated(self.parting_before(arms, kept.surface, normal));
@@ -287,6 +290,7 @@ impl<F: Eight> Pair<F> {
         spots.held = [saved(held.dot(along[0])), saved(held.dot(along[1]))];
         let Places { driven: kept_driven, bounce: kept_bounce, aside, .. } = &mut pack.places[i];
         (*kept_driven, *kept_bounce, *aside) = (saved(driven), saved(bounce & not(rests)), held.saved());
+        is_blow
     }
 
     /// Follows the bodies' places when they have gone, and leaves out of how far apart they are, and of what has crept, the way that the scenery has
