@@ -65,14 +65,15 @@ use span::Span;
 /// constraint takes them for balls.
 ///
 /// Where two bodies touch is found by separating axes: face on face by clipping (four points), edge on edge by their nearest points. Against
-/// colliders a body's corners count, and what of the scenery is nearest to its middle, where that lies in it: of what is smaller than the body,
-/// edges and balls, one place each. A loose ball, a particle with a radius that belongs to no body, is met at the place nearest to it; it does
+/// colliders a body's corners count, and what of the scenery is nearest to its middle, where that lies in it, and to its corners on that face: edges,
+/// and what is smaller than the body. What rises from the floor under a corner by no more than a four-hundredth of the body's least side is part of
+/// it, so that nothing catches on seams. A loose ball, a particle with a radius that belongs to no body, is met at the place nearest to it; it does
 /// not spin, and while it touches a body it meets the scenery by the same impulses. Impulses at these points, with those of the last sub-step to
 /// begin with, keep bodies from passing into each other within the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019;
 /// Catto, "Soft Constraints", GDC 2011), then velocities are brought to part as elasticity wants (Müller et al., "Detailed Rigid Body Simulation
 /// with Extended Position Based Dynamics", SCA 2020, section 3.6). Friction is Coulomb's. All impulses act on both at one place, so that linear
 /// and angular momentum are kept to rounding. Points are gone over until what is left to change is a hundredth of what forces change in a
-/// sub-step, a few times at the most.
+/// sub-step, eight times at the most.
 ///
 /// Bodies that lie still sleep: they stay where they are, at rest, and cost little; where any scenery may move they look around in each sub-step. One falls asleep when for 5 √(r/a), r being half its size and
 /// a what forces accelerate it by, neither it nor any that it touches has gone farther than 4 % of its least half side; who is awake and lies
