@@ -74,7 +74,7 @@ fn nothing_catches_on_seams_but_on_kerbs() {
     }
 }
 
-/// What hangs over an edge stays as long as its middle does not, and falls beyond.
+/// A body that hangs over an edge stays as long as its middle does not, and falls beyond.
 #[test]
 fn bodies_lie_on_edges_as_far_as_their_middles_are_borne() {
     for substeps in [1, 4, 20] {

@@ -31,7 +31,7 @@ impl Blows {
         Ok(())
     }
 
-    /// Who watches steps for it.
+    /// The observer that watches steps for it.
     pub(crate) fn observer(&mut self) -> &mut dyn Observer {
         self
     }
@@ -42,7 +42,7 @@ impl Blows {
         self.missed = 0;
     }
 
-    /// How many there were beyond those that there is room for.
+    /// The number of blows beyond those that there is room for.
     pub(crate) fn missed(&self) -> u32 {
         self.missed
     }
@@ -61,7 +61,7 @@ impl Blows {
         Ok(list)
     }
 
-    /// Who is struck, and whom it met.
+    /// The ids of who is struck, and of whom it met.
     ///
     /// # Errors
     /// If there is not enough memory.

@@ -72,7 +72,7 @@ pub fn version() -> String {
     env!("CARGO_PKG_VERSION").to_owned()
 }
 
-/// A scene in motion. All its memory is taken when it is made; stepping takes none.
+/// A scene in motion. All its memory is taken when it is made, but for what `save` and `listen` ask for; stepping takes none.
 ///
 /// `free()`, or `using`, gives the memory back at once; twice does no harm. Whoever is forgotten is freed when the engine collects garbage.
 #[wasm_bindgen]
@@ -301,7 +301,7 @@ impl World {
     /// ball, the place on a rigid body), the normal of what it met, toward it (x, y, z), by how much its velocity has changed (x, y, z, m/s), how fast
     /// the two came together along the normal \[m/s\], its mass \[kg\], and how long before `time` that was \[s\]. A copy.
     ///
-    /// Of two that meet, each that can move has a blow of its own.
+    /// A pair that meets has a blow for each of both that can move.
     ///
     /// # Errors
     /// If there is not enough memory.
@@ -309,8 +309,8 @@ impl World {
         memory::floats(&self.blows.numbers(self.state.system.time())?)
     }
 
-    /// Who was struck, for each of the `blows`: its id, as `ids` has it, and that of whom it met, 4294967295 for scenery. For a rigid body stands
-    /// its first particle. A copy.
+    /// The ids of who was struck, for each of the `blows`: its own, as `ids` has it, and that of whom it met, 4294967295 for scenery. A rigid body
+    /// goes by its first particle. A copy.
     ///
     /// # Errors
     /// If there is not enough memory.

@@ -43,7 +43,7 @@ pub(super) struct Body {
     pub(super) met: u32,
     /// 1 if something presses on it in this sub-step.
     pub(super) pressed: u32,
-    /// 1 if it takes part in a blow that something shall bounce off.
+    /// 1 if it takes part in a blow, or has turned far in the sub-step: what it has more than before is looked at.
     pub(super) bounces: u32,
     /// The colours of those that it touches, a bit for each.
     pub(super) colours: u32,

@@ -239,17 +239,18 @@ impl Visit<'_> {
             }
             // From within the body walls beside it are met higher up.
             let from = body.point(corner - out * (2.0 * self.reach));
-            let mut near = heapless::Vec::<Contact, 8>::new();
+            let (mut rims, mut left_out) = (heapless::Vec::<(Contact, Vec3), 8>::new(), 0);
             bodies.colliders.contacts(from, far, at, &mut |contact| {
-                let _ = near.push(*contact);
-            });
-            for contact in &near {
                 let place = body.place(contact.point);
                 let above = dot(place - inside, out);
                 let on = place - out * above;
                 if above.abs() <= self.reach && self.form.nearest(body, on).2 <= self.level() {
-                    self.put(bodies, &Contact { normal, ..*contact }, on);
+                    left_out += u64::from(rims.push((Contact { normal, ..*contact }, on)).is_err());
                 }
+            });
+            bodies.report.caps.contacts += left_out;
+            for (contact, on) in &rims {
+                self.put(bodies, contact, *on);
             }
         }
     }
