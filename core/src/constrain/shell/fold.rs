@@ -20,8 +20,10 @@ pub(super) struct RestFold {
     /// The angle at rest \[rad\]; zero is flat.
     pub(super) angle: f32,
     /// The curvature of the triangle on each side for each radian of the angle: along warp, weft, and √2 times that between
-    /// them \[1/m\]. Zero where the fold is degenerate.
+    /// them \[1/m\]. Zero where the fold is degenerate, and of what is fixed.
     pub(super) curvature: [[f32; 3]; 2],
+    /// The square of how fast the angle changes for each metre that the far corner of each side goes \[1/m²\].
+    pub(super) steep: [f32; 2],
     /// The point of the edge beside the far corner of each, as a share of it.
     pub(super) foot: [f32; 2],
     /// The square of how fast the angle may change for each metre that a corner goes \[1/m²\]: where it is faster, the fold acts less.
@@ -61,6 +63,12 @@ fn fold_angle(ways: [Vec3; 3]) -> f32 {
     angle(dot(m, n), dot(n.cross(m), ways[0]) / length(ways[0]))
 }
 
+/// How much there is of one curvature in another.
+#[cfg_attr(not(one_by_one), inline(always))]
+fn along([a, b, c]: [f32; 3], curvature: [f32; 3]) -> f32 {
+    a * curvature[0] + b * curvature[1] + c * curvature[2]
+}
+
 /// The square of how fast an angle changes for each metre that the corner goes for which that is fastest.
 #[cfg_attr(not(one_by_one), inline(always))]
 fn fastest(slope: [Vec3; 2], foot: [f32; 2]) -> f32 {
@@ -84,10 +92,13 @@ fn turn(angle: f32) -> f32 {
 }
 
 impl RestFold {
-    /// The fold with these ways from the first corner; `signs` say on which side each triangle's normal is.
-    pub(super) fn at_rest(ways: [Vec3; 3], warp: Vec3, signs: [f32; 2]) -> Self {
+    /// The fold with these ways from the first corner; `signs` say on which side each triangle's normal is, `fixed` whether all of it stays.
+    ///
+    /// A fold stands for how the halves beside it of both triangles bend. What is clamped bends on one side of its edge alone, and within that half by all
+    /// of the angle.
+    pub(super) fn at_rest(ways: [Vec3; 3], warp: Vec3, signs: [f32; 2], fixed: [bool; 2]) -> Self {
         let [e, f, g] = ways;
-        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2], foot: [0.0; 2], most: 0.0 };
+        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2], steep: [0.0; 2], foot: [0.0; 2], most: 0.0 };
         let side = |far: Vec3, sign: f32| {
             let up = far - e * (dot(far, e) / dot(e, e));
             let height = length(up);
@@ -98,7 +109,10 @@ impl RestFold {
         let (Some(first), Some(second)) = (side(f, signs[0]), side(g, signs[1])) else { return none };
         let foot = [f, g].map(|far| dot(far, e) / dot(e, e));
         let most = STEEPER * STEEPER * fastest(slopes(ways), foot);
-        let this = Self { angle: fold_angle(ways), curvature: [first, second], foot, most };
+        let steep = [first, second].map(|side| along(side, side));
+        let shares = if fixed[0] == fixed[1] { [1.0; 2] } else { fixed.map(|fixed| if fixed { 0.0 } else { 2.0 }) };
+        let curvature = [first.map(|part| part * shares[0]), second.map(|part| part * shares[1])];
+        let this = Self { angle: fold_angle(ways), curvature, steep, foot, most };
         let numbers = this.curvature.iter().flatten().chain(&this.foot);
         let sound = this.angle.is_finite() && most.is_finite() && numbers.copied().all(f32::is_finite);
         if sound { this } else { none }
@@ -107,24 +121,18 @@ impl RestFold {
     /// Tells whether it does anything.
     #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn acts(&self) -> bool {
-        self.curvature[0] != [0.0; 3]
-    }
-
-    /// The square of the curvature for each radian on a side \[1/m²\].
-    #[cfg_attr(not(one_by_one), inline(always))]
-    pub(super) fn steep(&self, side: usize) -> f32 {
-        self.moment(side, self.curvature[side])
+        self.steep[0] != 0.0
     }
 
     /// How it resists a change of its angle where bending stiffness is one, by the areas of its triangles.
     #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn stiffness(&self, areas: [f32; 2]) -> f32 {
-        areas[0] * self.steep(0) + areas[1] * self.steep(1)
+        areas[0] * self.moment(0, self.curvature[0]) + areas[1] * self.moment(1, self.curvature[1])
     }
 
     /// The larger of both.
     pub(super) fn steepness(&self) -> f32 {
-        max(self.steep(0), self.steep(1))
+        max(self.steep[0], self.steep[1])
     }
 
     /// Adds the curvature that a change of the angle makes to that of both triangles.
@@ -139,8 +147,7 @@ impl RestFold {
     /// The part that a triangle's curvature has in this fold's moment.
     #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn moment(&self, side: usize, curvature: [f32; 3]) -> f32 {
-        let [a, b, c] = self.curvature[side];
-        a * curvature[0] + b * curvature[1] + c * curvature[2]
+        along(self.curvature[side], curvature)
     }
 }
 
@@ -221,7 +228,7 @@ impl Fold {
         let (a, b) = (dot(m, m), dot(n, n));
         // Of a fold that hardly acts rounding leaves no angle.
         let sharp = min(max(1.0 - dot(m, n) / sqrt(a * b), 0.0), 2.0);
-        let narrow = max(a / bend.steep(0), b / bend.steep(1)) - 1.0;
+        let narrow = max(a / bend.steep[0], b / bend.steep[1]) - 1.0;
         TOGETHER * (sharp + max(narrow, 0.0))
     }
 

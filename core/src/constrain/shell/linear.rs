@@ -202,7 +202,7 @@ impl Linearise<'_, '_> {
         let (m, n) = (slope[0].rows(), slope[1].rows());
         let (x, y, open) = (foot[0].to_array(), foot[1].to_array(), open.to_array());
         for i in 0..LANES {
-            let acts = bends[i].curvature[0] != [0.0; 3] && sound & 1 << i != 0;
+            let acts = bends[i].acts() && sound & 1 << i != 0;
             let fold = Fold { slope: [vector(m[i]), vector(n[i])], foot: [x[i], y[i]], moment: 0.0 };
             folds[i] = if acts { fold } else { Fold::NONE };
             curve(self.solver.strains, &hinges[i], &bends[i], if acts { open[i] } else { 0.0 });
@@ -280,7 +280,7 @@ fn held_of<F: Eight>(
     let (zero, one, few) = (like.all(0.0), like.all(1.0), like.all(TOGETHER));
     let (a, b) = (m.dot(m), n.dot(n));
     let sharp = lanes::min(lanes::max(one - m.dot(n) / (a * b).sqrt(), zero), like.all(2.0));
-    let steep = [column!(like, bends, |bend| bend.steep(0)), column!(like, bends, |bend| bend.steep(1))];
+    let steep = [column!(like, bends, |bend| bend.steep[0]), column!(like, bends, |bend| bend.steep[1])];
     let narrow = lanes::max(a / steep[0], b / steep[1]) - one;
     let excess = stiffness * (few * (sharp + lanes::max(narrow, zero)));
     let (p, q) = (x - column!(like, bends, |bend| bend.foot[0]), y - column!(like, bends, |bend| bend.foot[1]));

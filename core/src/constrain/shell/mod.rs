@@ -212,6 +212,10 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
         for (left, corner) in left.iter_mut().zip(0..) {
             *left = place(corner).unwrap_or(Vec3::NAN);
         }
+        let is_fixed = |corner: u32| {
+            let row = self.particles.as_ref().get(corner as usize).and_then(|&particle| bodies.row_of_start(particle));
+            row.is_some_and(|row| bodies.inverse_mass[row] == 0.0)
+        };
         let mut degenerate = 0;
         for (&corners, cell) in self.triangles.as_ref().iter().zip(&mut *cells) {
             *cell = Cell::NONE;
@@ -227,7 +231,8 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
                 continue;
             };
             let signs = [hinge.sign(*first), -hinge.sign(*second)];
-            *bend = RestFold::at_rest([b - a, c - a, d - a], self.warp, signs);
+            let fixed = [first, second].map(|face| face.iter().all(|&corner| is_fixed(corner)));
+            *bend = RestFold::at_rest([b - a, c - a, d - a], self.warp, signs, fixed);
             degenerate += u64::from(!bend.acts());
         }
         bodies.report.caps.degenerate += degenerate;

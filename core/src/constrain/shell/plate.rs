@@ -272,7 +272,7 @@ impl Patch {
     fn take(&mut self, shape: &Shape<'_>, roll: &[u32], face: u32, hinge: usize) {
         let (Some(hinge), Some(bend)) = (shape.hinges.get(hinge), shape.bends.get(hinge)) else { return };
         let gone = |corner: u32| roll.get(corner as usize).is_none_or(|&is| is == GONE);
-        if hinge.corners().into_iter().any(gone) || bend.curvature[0] == [0.0; 3] {
+        if hinge.corners().into_iter().any(gone) || !bend.acts() {
             return;
         }
         let [first, second] = [0, 1].map(|side| slopes(bend, side));
@@ -298,7 +298,7 @@ impl Patch {
 
 /// How the angle of a hinge changes for each metre that the corners of its edge and the far one of a side go along that side's normal, at rest.
 fn slopes(bend: &RestFold, side: usize) -> [f32; 3] {
-    let slope = sqrt(bend.steep(side));
+    let slope = sqrt(bend.steep[side]);
     let foot = bend.foot[side];
     [-(1.0 - foot) * slope, -foot * slope, slope]
 }
