@@ -10,6 +10,7 @@ mod births;
 mod blows;
 mod bonds_on_scenery;
 mod carried;
+mod chains_of_bodies;
 #[path = "circles/main.rs"]
 mod circles;
 mod clusters;

@@ -205,21 +205,22 @@ fn balls_by_impulse_above_boxes_are_remarked_on() {
     }
 }
 
-/// Where two ropes pull at one body, as many sub-steps are named as leave no remark, more for bodies below each other and for ropes of more segments, and none where there is
-/// one rope, or nothing pulls.
+/// Where two ropes pull at one body, as many sub-steps are named as leave no remark, more for small ones and for what is heavy below them, and none where there is one rope, or
+/// nothing pulls, or nothing turns fast.
 #[test]
 fn bodies_on_two_ropes_are_remarked_on() {
     let folder = Folder::new();
-    let scene = |substeps: u32, second: &str, gravity: &str, segments: u32| {
+    let scene = |substeps: u32, second: &str, gravity: &str, [side, below]: [f32; 2]| {
         format!(
-            r#"{{"run": {{"substeps": {substeps}}}, "forces": [{gravity}], "boxes": [{{"sides": [0.2, 0.2, 0.2], "mass": 1, "position": [0, -1.1, 0], "count": [1, 2, 1], "spacing": [1, 1, 1]}}],
-            "ropes": [{{"curve": [[-0.1, 0, 0], [-0.1, -1, 0]], "segments": {segments}, "weight": 0.01, "fixed": [0], "ends": [null, {{"box": 0}}]}},
-            {{"curve": [[0.1, 0, 0], [0.1, -1, 0]], "segments": {segments}, "weight": 0.01, "ends": {second}}}]}}"#
+            r#"{{"run": {{"substeps": {substeps}}}, "forces": [{gravity}], "boxes": [{{"sides": [{side}, {side}, {side}], "mass": 1, "position": [0, -1.1, 0]}},
+            {{"sides": [0.2, 0.2, 0.2], "mass": {below}, "position": [0, -2.1, 0]}}],
+            "ropes": [{{"curve": [[0, 0, 0], [0, -1, 0]], "segments": 5, "weight": 0.01, "fixed": [0], "ends": [null, {{"box": 0}}]}},
+            {{"curve": [[0, 0, 0], [0, -1, 0]], "segments": 5, "weight": 0.01, "ends": {second}}}]}}"#
         )
     };
     let pulls = r#"{"gravity": {"acceleration": [0, -9.81, 0]}}"#;
-    let told = |substeps: u32, second: &str, gravity: &str, segments: u32| {
-        folder.write("a.json", scene(substeps, second, gravity, segments));
+    let told = |substeps: u32, second: &str, gravity: &str, sizes: [f32; 2]| {
+        folder.write("a.json", scene(substeps, second, gravity, sizes));
         let answer = folder.run("run a.json --steps 1");
         let told = answer.warnings().into_iter().find(|warning| warning.contains("another rope pulls at too"));
         told.map(|text| {
@@ -227,16 +228,18 @@ fn bodies_on_two_ropes_are_remarked_on() {
         })
     };
     let (alone, beside, below) = ("[null, null]", r#"[null, {"box": 0}]"#, r#"[{"box": 1}, {"box": 0}]"#);
-    assert_eq!(told(1, alone, pulls, 20), None);
-    assert_eq!(told(1, beside, "", 20), None);
-    assert_eq!(told(1, beside, pulls, 5), None);
-    for (second, segments) in [(beside, 8), (beside, 20), (below, 5), (below, 20)] {
-        let enough = told(1, second, pulls, segments).unwrap();
-        assert!(enough > 3 * segments / 8, "{segments}: {enough}");
-        assert_eq!(told(enough, second, pulls, segments), None, "{enough}");
-        assert_eq!(told(enough - 1, second, pulls, segments), Some(enough));
+    assert_eq!(told(1, alone, pulls, [0.01, 100.0]), None);
+    assert_eq!(told(1, beside, "", [0.01, 100.0]), None);
+    assert_eq!(told(1, beside, pulls, [0.2, 100.0]), None);
+    assert_eq!(told(1, below, pulls, [0.2, 1.0]), None);
+    let mut last = 1;
+    for (second, sizes) in [(beside, [0.01, 1.0]), (below, [0.2, 50.0]), (below, [0.01, 50.0])] {
+        let enough = told(1, second, pulls, sizes).unwrap();
+        assert!(enough > last, "{second} {sizes:?}: {enough}");
+        assert_eq!(told(enough, second, pulls, sizes), None, "{enough}");
+        assert_eq!(told(enough - 1, second, pulls, sizes), Some(enough));
+        last = enough;
     }
-    assert!(told(1, below, pulls, 8) > told(1, beside, pulls, 8));
 }
 
 /// Whatever it begins with, a scene is remarked on if its capacity is less than all of that, and only then.

@@ -90,6 +90,8 @@ pub struct Bodies<'a> {
     pub(crate) marks: &'a mut [u32],
     /// For each the name of what it is bound in, zero for none; empty where nothing binds.
     pub(crate) bound: &'a mut [u32],
+    /// How much faster each will be made as velocities are settled \[m/s\]; empty where nobody puts anything off.
+    pub(crate) postponed: &'a mut [Vec3],
     pub(crate) observer: &'a mut dyn Observer,
 }
 
@@ -144,6 +146,20 @@ impl Bodies<'_> {
         self.position[row] = from + way;
         let lost = way - (self.position[row] - from);
         *left = if lost.is_finite() { lost } else { Vec3::ZERO };
+    }
+
+    /// Says that a particle will be made faster by so much \[m/s\] as velocities are settled; it is done when the same is said with its sign changed. Others
+    /// can count that as a force meanwhile. All of it is forgotten as a sub-step begins.
+    pub fn postpone(&mut self, row: usize, faster: Vec3) {
+        if let Some(sum) = self.postponed.get_mut(row) {
+            *sum += faster;
+        }
+    }
+
+    /// How much faster a particle will yet be made as velocities are settled \[m/s\].
+    #[must_use]
+    pub fn postponed(&self, row: usize) -> Vec3 {
+        self.postponed.get(row).copied().unwrap_or(Vec3::ZERO)
     }
 
     /// Moves a particle by `by` \[m\], or makes it faster by that \[m/s\].

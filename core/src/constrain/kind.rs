@@ -169,6 +169,12 @@ impl Constraint for ConstraintKind {
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         self.get().project(bodies, share);
     }
+    fn repeats(&self) -> bool {
+        self.get().repeats()
+    }
+    fn project_again(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) -> bool {
+        self.get().project_again(bodies, share)
+    }
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         self.get().settle(bodies, share);
     }

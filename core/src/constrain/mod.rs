@@ -131,6 +131,18 @@ pub trait Constraint: Sync {
     /// velocities follow.
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>);
 
+    /// Tells whether it may be [asked again](Constraint::project_again).
+    fn repeats(&self) -> bool {
+        false
+    }
+
+    /// Moves particles again, if others have since moved them from where they satisfy it, and tells whether it has. In a list those that repeat and come
+    /// one after the other are asked by turns until nobody has moved anything, or some times at the most: what is left shows in the next sub-step.
+    fn project_again(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) -> bool {
+        let _ = (bodies, share);
+        false
+    }
+
     /// Changes velocities at a sub-step's end, when all have been projected: restitution, friction, viscosity.
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let _ = (bodies, share);
@@ -162,6 +174,7 @@ fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment
             moved.tell(Phase::Advance, end);
             moved.tell(Phase::Project, end);
             let (mut bodies, mut share) = moved.lend(substep, &mut all_pairs);
+            bodies.postponed.fill(glam::Vec3::ZERO);
             constraints.begin(&mut bodies, &mut share);
             constraints.project(&mut bodies, &mut share);
             constraints.settle(&mut bodies, &mut share);
@@ -203,9 +216,60 @@ impl<T: Constraint + ?Sized> Constraint for &T {
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         (**self).project(bodies, share);
     }
+    fn repeats(&self) -> bool {
+        (**self).repeats()
+    }
+    fn project_again(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) -> bool {
+        (**self).project_again(bodies, share)
+    }
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         (**self).settle(bodies, share);
     }
+}
+
+/// Constraints of a list that repeat are asked again so many times at the most.
+const AGAIN: u32 = 63;
+
+/// Projects a list, one after the other; those that repeat until nobody has moved anything, before one comes that does not.
+fn project_list<'c, T: Constraint + 'c>(
+    list: impl Iterator<Item = &'c T> + Clone,
+    bodies: &mut Bodies<'_>,
+    share: &mut Share<'_>,
+) {
+    let mut run = 0..0;
+    for (number, part) in list.clone().enumerate() {
+        if !part.repeats() {
+            project_again(list.clone(), run, bodies, share);
+            run = number + 1..number + 1;
+        }
+        let mut shares = share.parts();
+        list.clone().take(number).for_each(|part| drop(shares.next(part.demand())));
+        part.project(bodies, &mut shares.next(part.demand()));
+        run.end = number + 1;
+    }
+    project_again(list, run, bodies, share);
+}
+
+/// Asks those of a list with such numbers again, until nobody has moved anything.
+fn project_again<'c, T: Constraint + 'c>(
+    list: impl Iterator<Item = &'c T> + Clone,
+    run: core::ops::Range<usize>,
+    bodies: &mut Bodies<'_>,
+    share: &mut Share<'_>,
+) {
+    let mut is_any = run.len() > 1;
+    for _ in 0..AGAIN {
+        if !is_any {
+            return;
+        }
+        is_any = false;
+        let mut shares = share.parts();
+        for (number, part) in list.clone().enumerate().take(run.end) {
+            let mut own = shares.next(part.demand());
+            is_any |= run.contains(&number) && part.project_again(bodies, &mut own);
+        }
+    }
+    bodies.report.effort.capped += u64::from(is_any);
 }
 
 /// The methods of a constraint that has parts: it does what they do, each in its own share of the memory.
@@ -233,8 +297,16 @@ macro_rules! all_of {
         }
         all_of!(@phase prepare, $parts);
         all_of!(@phase begin, $parts);
-        all_of!(@phase project, $parts);
+        all_of!(@project $parts);
         all_of!(@phase settle, $parts);
+    };
+    (@project []) => {
+        fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+            project_list(self.iter(), bodies, share);
+        }
+    };
+    (@project $parts:tt) => {
+        all_of!(@phase project, $parts);
     };
     (@phase $phase:ident, $parts:tt) => {
         fn $phase(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

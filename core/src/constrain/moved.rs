@@ -5,7 +5,7 @@ use crate::custom::CustomColumnsMut;
 use crate::force::Attributes;
 use crate::index::{IndexChoice, ListMemory};
 use crate::integrate::Integrator;
-use crate::memory::{Layout, Scratch, take};
+use crate::memory::{Layout, Scratch, take, take_vectors};
 use crate::observe::{Observer, Phase};
 use crate::reap::PendingDeath;
 use crate::report::Report;
@@ -63,6 +63,7 @@ impl Moved<'_> {
         let mut step = &mut *self.lasting;
         let bound = take(&mut step, self.layout.names());
         let named = len.min(bound.len());
+        let postponed = take_vectors(&mut step, self.layout.postponed());
         let bodies = Bodies {
             position: self.position,
             velocity: self.velocity,
@@ -85,6 +86,7 @@ impl Moved<'_> {
             start: lives.springs.start,
             marks: self.marks,
             bound: &mut bound[..named],
+            postponed,
             observer: self.observer,
         };
         (bodies, Share { kept, step, scratch, capacity })

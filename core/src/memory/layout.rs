@@ -57,12 +57,20 @@ pub struct Demand {
     pub finds_near: bool,
     /// True if it says which particles it holds in their places to each other ([`Constraint::bind`](crate::Constraint::bind)).
     pub binds: bool,
+    /// True if it puts changes of velocities off until all are settled ([`Bodies::postpone`](crate::constrain::Bodies::postpone)).
+    pub postpones: bool,
 }
 
 impl Demand {
     /// Nothing.
-    pub const NONE: Self =
-        Self { kept: Words::NONE, step: Words::NONE, scratch: Words::NONE, finds_near: false, binds: false };
+    pub const NONE: Self = Self {
+        kept: Words::NONE,
+        step: Words::NONE,
+        scratch: Words::NONE,
+        finds_near: false,
+        binds: false,
+        postpones: false,
+    };
 
     /// The demand of two parts together.
     #[must_use]
@@ -73,12 +81,15 @@ impl Demand {
             scratch: self.scratch.or(other.scratch),
             finds_near: self.finds_near || other.finds_near,
             binds: self.binds || other.binds,
+            postpones: self.postpones || other.postpones,
         }
     }
 
-    /// The same, with a word through the step for each particle, before all others, if anybody binds particles: the name by which it is bound.
-    pub(crate) fn with_names(mut self) -> Self {
-        self.step.per_row = self.step.per_row.saturating_add(usize::from(self.binds));
+    /// The same, with words through the step for each particle, before all others: the name by which it is bound, if anybody binds particles, and what is
+    /// put off of its velocity, if anybody does that.
+    pub(crate) fn with_shared(mut self) -> Self {
+        let shared = usize::from(self.binds) + 3 * usize::from(self.postpones);
+        self.step.per_row = self.step.per_row.saturating_add(shared);
         self
     }
 }
@@ -278,6 +289,11 @@ impl Layout {
     /// The words through the step that are names by which particles are bound.
     pub(crate) fn names(&self) -> usize {
         if self.plan.constraints.binds { self.capacity } else { 0 }
+    }
+
+    /// The vectors through the step that are changes of velocities put off.
+    pub(crate) fn postponed(&self) -> usize {
+        if self.plan.constraints.postpones { self.capacity } else { 0 }
     }
 
     /// The number of particles that there is room for.

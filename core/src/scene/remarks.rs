@@ -196,33 +196,56 @@ impl SceneFile {
         (excess > 1.0).then(shakes)
     }
 
-    /// A remark on a rope to a body that another rope is tied to as well: they are solved one after the other, and each pulls the body as if it were alone. How
-    /// many sub-steps are enough was measured, for bodies side by side on two ropes, and for those of which one hangs below another and weighs up to a hundred times as much.
+    /// A remark on a rope to a body that another rope is tied to as well: what they pull turns it to and fro. A body of mass m whose smallest diagonal is d, between ropes
+    /// of length L that pull with T, turns by ω² = T a (1 + a / L) / I, with a = d / 2 and I = m d² / 12. T is at most the weight of all that hangs together.
     fn hung_twice(&self, rope: usize) -> Option<String> {
-        /// Segments that a rope may have between two anchors for any sub-steps.
-        const FEW: u32 = 5;
-        let own = &self.ropes[rope];
-        let bodies = |cord: &Cord| cord.ends.into_iter().flatten().filter(|end| matches!(end, Body::Box(_)));
-        let is_shared = |body: Body| self.ropes.iter().flat_map(bodies).filter(|other| *other == body).count() > 1;
-        if !bodies(own).any(is_shared) {
-            return None;
+        /// Radians that it may turn by in a sub-step, as measured for up to eight bodies below each other, and for some of a hundred times the weight.
+        const TURNS: f32 = 0.8;
+        let bodies = |cord: &Cord| {
+            cord.ends
+                .into_iter()
+                .flatten()
+                .filter_map(|end| if let Body::Box(number) = end { Some(number) } else { None })
+        };
+        let pulled_by = |body: u32| self.ropes.iter().filter(move |cord| bodies(cord).any(|other| other == body));
+        let mut together: Vec<u32> = bodies(&self.ropes[rope]).collect();
+        let mut next = 0;
+        while let Some(&body) = together.get(next) {
+            let beside: Vec<u32> = pulled_by(body).flat_map(bodies).collect();
+            beside.into_iter().for_each(|other| {
+                if !together.contains(&other) {
+                    together.push(other)
+                }
+            });
+            next += 1;
         }
-        let shared = || self.ropes.iter().filter(|cord| bodies(cord).any(is_shared));
-        let is_chain = shared().any(|cord| bodies(cord).count() > 1);
-        let segments = shared().map(|cord| cord.segments).fold(0, u32::max);
-        if !is_chain && segments <= FEW {
-            return None;
-        }
-        let long: f32 = own.curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
-        // The sub-steps in the time in which a pendulum as long turns by a radian.
-        let each = if is_chain { max(240.0, 14.0 * segments as f32) } else { 10.0 * segments as f32 };
-        let needed = ((self.run.dt as f32 * sqrt(length(self.pull()) / long) * each) as u32).saturating_add(1);
+        let free = |number: u32| self.boxes_of(number).filter(|boxes| !boxes.fixed);
+        let load: f32 = together.iter().filter_map(|&number| Some(free(number)?.mass)).sum();
+        let long: f32 = self.ropes[rope].curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
+        let fastest = |boxes: &Boxes| {
+            let Vec3 { x, y, z } = boxes.sides * boxes.sides;
+            let across = sqrt(x + y + z - max(max(x, y), z));
+            sqrt(length(self.pull()) * load / boxes.mass * (6.0 / across + 3.0 / long))
+        };
+        let shared = bodies(&self.ropes[rope]).filter(|&body| pulled_by(body).count() > 1).filter_map(free);
+        let fastest = shared.map(fastest).fold(0.0, max);
+        let needed = ((self.run.dt as f32 * fastest / TURNS) as u32).saturating_add(1);
         let many = || {
             format!(
-                "it pulls at a body that another rope pulls at too, each as if it were alone: in few sub-steps they throw it about; run.substeps of {needed} are enough"
+                "it pulls at a body that another rope pulls at too: they turn it to and fro by {fastest:.0} rad/s, and throw it about in few sub-steps; run.substeps of {needed} are enough"
             )
         };
         (needed > self.substeps()).then(many)
+    }
+
+    /// The boxes that a body with such a number is of.
+    fn boxes_of(&self, number: u32) -> Option<&Boxes> {
+        let mut left = u64::from(number);
+        self.boxes.iter().find(|boxes| {
+            let is_here = left < boxes.number();
+            left = left.saturating_sub(boxes.number());
+            is_here
+        })
     }
 
     /// A remark on what reaches out of the room through one side and not through the opposite one, where it would come in again.

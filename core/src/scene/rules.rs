@@ -125,7 +125,7 @@ impl Scene<'_> {
             ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
             start: self.needs_start() || needs.tell.is_some(),
             constrained,
-            constraints: self.constraints.demand().with_names(),
+            constraints: self.constraints.demand().with_shared(),
             trees: needs.tree_columns(),
             near: needs.columns(self.index) - needs.tree_columns(),
             // Newborns need one for their acceleration, whatever the method.

@@ -20,10 +20,10 @@ pub(super) struct RestFold {
     /// The angle at rest \[rad\]; zero is flat.
     pub(super) angle: f32,
     /// The curvature of the triangle on each side for each radian of the angle: along warp, weft, and √2 times that between
-    /// them \[1/m\]. Zero where the fold is degenerate, and of what is fixed.
+    /// them \[1/m\]. Zero where the fold is degenerate.
     pub(super) curvature: [[f32; 3]; 2],
-    /// The square of how fast the angle changes for each metre that the far corner of each side goes \[1/m²\].
-    pub(super) steep: [f32; 2],
+    /// How much more of the angle the second side takes than half: zero of two that are free; one or minus one where the first or the second is fixed.
+    pub(super) aside: f32,
     /// The point of the edge beside the far corner of each, as a share of it.
     pub(super) foot: [f32; 2],
     /// The square of how fast the angle may change for each metre that a corner goes \[1/m²\]: where it is faster, the fold acts less.
@@ -63,12 +63,6 @@ fn fold_angle(ways: [Vec3; 3]) -> f32 {
     angle(dot(m, n), dot(n.cross(m), ways[0]) / length(ways[0]))
 }
 
-/// How much there is of one curvature in another.
-#[cfg_attr(not(one_by_one), inline(always))]
-fn along([a, b, c]: [f32; 3], curvature: [f32; 3]) -> f32 {
-    a * curvature[0] + b * curvature[1] + c * curvature[2]
-}
-
 /// The square of how fast an angle changes for each metre that the corner goes for which that is fastest.
 #[cfg_attr(not(one_by_one), inline(always))]
 fn fastest(slope: [Vec3; 2], foot: [f32; 2]) -> f32 {
@@ -98,7 +92,7 @@ impl RestFold {
     /// of the angle.
     pub(super) fn at_rest(ways: [Vec3; 3], warp: Vec3, signs: [f32; 2], fixed: [bool; 2]) -> Self {
         let [e, f, g] = ways;
-        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2], steep: [0.0; 2], foot: [0.0; 2], most: 0.0 };
+        let none = Self { angle: 0.0, curvature: [[0.0; 3]; 2], aside: 0.0, foot: [0.0; 2], most: 0.0 };
         let side = |far: Vec3, sign: f32| {
             let up = far - e * (dot(far, e) / dot(e, e));
             let height = length(up);
@@ -109,10 +103,8 @@ impl RestFold {
         let (Some(first), Some(second)) = (side(f, signs[0]), side(g, signs[1])) else { return none };
         let foot = [f, g].map(|far| dot(far, e) / dot(e, e));
         let most = STEEPER * STEEPER * fastest(slopes(ways), foot);
-        let steep = [first, second].map(|side| along(side, side));
-        let shares = if fixed[0] == fixed[1] { [1.0; 2] } else { fixed.map(|fixed| if fixed { 0.0 } else { 2.0 }) };
-        let curvature = [first.map(|part| part * shares[0]), second.map(|part| part * shares[1])];
-        let this = Self { angle: fold_angle(ways), curvature, steep, foot, most };
+        let aside = if fixed[0] == fixed[1] { 0.0 } else { 2.0 * f32::from(fixed[0]) - 1.0 };
+        let this = Self { angle: fold_angle(ways), curvature: [first, second], aside, foot, most };
         let numbers = this.curvature.iter().flatten().chain(&this.foot);
         let sound = this.angle.is_finite() && most.is_finite() && numbers.copied().all(f32::is_finite);
         if sound { this } else { none }
@@ -121,24 +113,38 @@ impl RestFold {
     /// Tells whether it does anything.
     #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn acts(&self) -> bool {
-        self.steep[0] != 0.0
+        self.curvature[0] != [0.0; 3]
+    }
+
+    /// The square of the curvature for each radian on a side \[1/m²\].
+    #[cfg_attr(not(one_by_one), inline(always))]
+    pub(super) fn steep(&self, side: usize) -> f32 {
+        let [a, b, c] = self.curvature[side];
+        a * a + b * b + c * c
+    }
+
+    /// How much of the angle a side takes, in halves.
+    #[cfg_attr(not(one_by_one), inline(always))]
+    pub(super) fn share(&self, side: usize) -> f32 {
+        if side == 0 { 1.0 - self.aside } else { 1.0 + self.aside }
     }
 
     /// How it resists a change of its angle where bending stiffness is one, by the areas of its triangles.
     #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn stiffness(&self, areas: [f32; 2]) -> f32 {
-        areas[0] * self.moment(0, self.curvature[0]) + areas[1] * self.moment(1, self.curvature[1])
+        let [a, b] = [self.share(0), self.share(1)];
+        areas[0] * (a * a * self.steep(0)) + areas[1] * (b * b * self.steep(1))
     }
 
     /// The larger of both.
     pub(super) fn steepness(&self) -> f32 {
-        max(self.steep[0], self.steep[1])
+        max(self.steep(0), self.steep(1))
     }
 
     /// Adds the curvature that a change of the angle makes to that of both triangles.
     #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn curve(&self, side: usize, change: f32, curvature: &mut [f32; 3]) {
-        let [a, b, c] = self.curvature[side];
+        let ([a, b, c], change) = (self.curvature[side], self.share(side) * change);
         curvature[0] += a * change;
         curvature[1] += b * change;
         curvature[2] += c * change;
@@ -147,7 +153,8 @@ impl RestFold {
     /// The part that a triangle's curvature has in this fold's moment.
     #[cfg_attr(not(one_by_one), inline(always))]
     pub(super) fn moment(&self, side: usize, curvature: [f32; 3]) -> f32 {
-        along(self.curvature[side], curvature)
+        let [a, b, c] = self.curvature[side];
+        self.share(side) * (a * curvature[0] + b * curvature[1] + c * curvature[2])
     }
 }
 
@@ -228,7 +235,7 @@ impl Fold {
         let (a, b) = (dot(m, m), dot(n, n));
         // Of a fold that hardly acts rounding leaves no angle.
         let sharp = min(max(1.0 - dot(m, n) / sqrt(a * b), 0.0), 2.0);
-        let narrow = max(a / bend.steep[0], b / bend.steep[1]) - 1.0;
+        let narrow = max(a / bend.steep(0), b / bend.steep(1)) - 1.0;
         TOGETHER * (sharp + max(narrow, 0.0))
     }
 

@@ -280,7 +280,7 @@ fn held_of<F: Eight>(
     let (zero, one, few) = (like.all(0.0), like.all(1.0), like.all(TOGETHER));
     let (a, b) = (m.dot(m), n.dot(n));
     let sharp = lanes::min(lanes::max(one - m.dot(n) / (a * b).sqrt(), zero), like.all(2.0));
-    let steep = [column!(like, bends, |bend| bend.steep[0]), column!(like, bends, |bend| bend.steep[1])];
+    let steep = [column!(like, bends, |bend| bend.steep(0)), column!(like, bends, |bend| bend.steep(1))];
     let narrow = lanes::max(a / steep[0], b / steep[1]) - one;
     let excess = stiffness * (few * (sharp + lanes::max(narrow, zero)));
     let (p, q) = (x - column!(like, bends, |bend| bend.foot[0]), y - column!(like, bends, |bend| bend.foot[1]));

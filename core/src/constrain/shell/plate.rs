@@ -277,9 +277,10 @@ impl Patch {
         }
         let [first, second] = [0, 1].map(|side| slopes(bend, side));
         let [a, b] = [first[0] + second[0], first[1] + second[1]];
-        for (curvature, _) in bend.curvature.iter().zip(hinge.faces).filter(|&(_, of)| of == face) {
+        for (side, _) in (0..2).zip(hinge.faces).filter(|&(_, of)| of == face) {
+            let curvature = bend.curvature[side];
             // Where the triangle's normal is against the fold's, the curvature changes its sign: all folds of a triangle are told along its own.
-            let sign = if curvature[0] + curvature[1] < 0.0 { -1.0 } else { 1.0 };
+            let sign = if curvature[0] + curvature[1] < 0.0 { -1.0 } else { 1.0 } * bend.share(side);
             for (corner, slope) in hinge.corners().into_iter().zip([a, b, first[2], second[2]]) {
                 self.add(corner, curvature.map(|part| part * (sign * slope)));
             }
@@ -298,7 +299,7 @@ impl Patch {
 
 /// How the angle of a hinge changes for each metre that the corners of its edge and the far one of a side go along that side's normal, at rest.
 fn slopes(bend: &RestFold, side: usize) -> [f32; 3] {
-    let slope = sqrt(bend.steep[side]);
+    let slope = sqrt(bend.steep(side));
     let foot = bend.foot[side];
     [-(1.0 - foot) * slope, -foot * slope, slope]
 }

@@ -136,11 +136,6 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
         Some(Self::way(bodies, first, tied, 0.0) - mean - self.lift(bodies, place, 0.0)?)
     }
 
-    /// How fast a particle in this row goes away from there.
-    pub(super) fn parting_from(&self, bodies: &Bodies<'_>, place: &[u32], row: usize) -> Option<Vec3> {
-        self.parting(bodies, place, [row, self.row(bodies, 0)?])
-    }
-
     /// How fast it goes away from there.
     pub(super) fn parting(&self, bodies: &Bodies<'_>, place: &[u32], [tied, first]: [usize; 2]) -> Option<Vec3> {
         let v = &bodies.velocity;
