@@ -3,6 +3,7 @@
 mod grip;
 mod hold;
 mod place;
+mod pull;
 mod rope;
 
 pub use rope::TiedRope;
