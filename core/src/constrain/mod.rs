@@ -48,6 +48,8 @@ pub use shell::{Shell, ShellParams};
 pub use strain_limits::{StrainLimitParams, StrainLimits};
 pub use strand::{StrandParams, Strands};
 pub use tie::{Tie, TiedRope};
+#[cfg(feature = "alloc")]
+pub(crate) use union::{root, unite};
 
 pub use crate::cloth::Hinge;
 #[cfg(feature = "alloc")]
@@ -236,18 +238,27 @@ fn project_list<'c, T: Constraint + 'c>(
     bodies: &mut Bodies<'_>,
     share: &mut Share<'_>,
 ) {
-    let mut run = 0..0;
-    for (number, part) in list.clone().enumerate() {
-        if !part.repeats() {
-            project_again(list.clone(), run, bodies, share);
-            run = number + 1..number + 1;
+    let (mut next, mut is_done) = (0, false);
+    while !is_done {
+        let (mut shares, mut run) = (share.parts(), next..next);
+        is_done = true;
+        for (number, part) in list.clone().enumerate() {
+            let mut own = shares.next(part.demand());
+            if number < next {
+                continue;
+            }
+            if !part.repeats() {
+                if run.len() > 1 {
+                    is_done = false;
+                    break;
+                }
+                run.start = number + 1;
+            }
+            part.project(bodies, &mut own);
+            (next, run.end) = (number + 1, number + 1);
         }
-        let mut shares = share.parts();
-        list.clone().take(number).for_each(|part| drop(shares.next(part.demand())));
-        part.project(bodies, &mut shares.next(part.demand()));
-        run.end = number + 1;
+        project_again(list.clone(), run, bodies, share);
     }
-    project_again(list, run, bodies, share);
 }
 
 /// Asks those of a list with such numbers again, until nobody has moved anything.

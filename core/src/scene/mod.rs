@@ -52,6 +52,8 @@ mod references;
 mod remarks;
 mod response;
 #[cfg(feature = "alloc")]
+mod rigging;
+#[cfg(feature = "alloc")]
 mod room;
 mod rules;
 #[cfg(feature = "schema")]

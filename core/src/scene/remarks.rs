@@ -1,10 +1,10 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::{Body, Boxes, Cloth, Cord, Growth, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
+use super::{Boxes, Cloth, Cord, Growth, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::emit::{Spread, Varied};
 use crate::force::{ForceKind, Friction};
-use crate::math::{length, max, sqrt};
+use crate::math::{length, sqrt};
 use crate::reap::ReaperKind;
 use crate::shape::{Aabb, Shape, Surface};
 use alloc::format;
@@ -62,7 +62,7 @@ impl SceneFile {
             add(format_args!("cloths[{i}]"), self.long_for_plate(cloth));
         }
         // All such ropes are of one kind to whoever reads it.
-        if let Some((i, remark)) = (0..self.ropes.len()).find_map(|i| Some((i, self.hung_twice(i)?))) {
+        if let Some((i, remark)) = self.hung_in_turn() {
             add(format_args!("ropes[{i}].ends"), Some(remark));
         }
         if let Some(Response::Force(penalty)) = self.contacts {
@@ -196,58 +196,6 @@ impl SceneFile {
         (excess > 1.0).then(shakes)
     }
 
-    /// A remark on a rope to a body that another rope is tied to as well: what they pull turns it to and fro. A body of mass m whose smallest diagonal is d, between ropes
-    /// of length L that pull with T, turns by ω² = T a (1 + a / L) / I, with a = d / 2 and I = m d² / 12. T is at most the weight of all that hangs together.
-    fn hung_twice(&self, rope: usize) -> Option<String> {
-        /// Radians that it may turn by in a sub-step, as measured for up to eight bodies below each other, and for some of a hundred times the weight.
-        const TURNS: f32 = 0.8;
-        let bodies = |cord: &Cord| {
-            cord.ends
-                .into_iter()
-                .flatten()
-                .filter_map(|end| if let Body::Box(number) = end { Some(number) } else { None })
-        };
-        let pulled_by = |body: u32| self.ropes.iter().filter(move |cord| bodies(cord).any(|other| other == body));
-        let mut together: Vec<u32> = bodies(&self.ropes[rope]).collect();
-        let mut next = 0;
-        while let Some(&body) = together.get(next) {
-            let beside: Vec<u32> = pulled_by(body).flat_map(bodies).collect();
-            beside.into_iter().for_each(|other| {
-                if !together.contains(&other) {
-                    together.push(other)
-                }
-            });
-            next += 1;
-        }
-        let free = |number: u32| self.boxes_of(number).filter(|boxes| !boxes.fixed);
-        let load: f32 = together.iter().filter_map(|&number| Some(free(number)?.mass)).sum();
-        let long: f32 = self.ropes[rope].curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
-        let fastest = |boxes: &Boxes| {
-            let Vec3 { x, y, z } = boxes.sides * boxes.sides;
-            let across = sqrt(x + y + z - max(max(x, y), z));
-            sqrt(length(self.pull()) * load / boxes.mass * (6.0 / across + 3.0 / long))
-        };
-        let shared = bodies(&self.ropes[rope]).filter(|&body| pulled_by(body).count() > 1).filter_map(free);
-        let fastest = shared.map(fastest).fold(0.0, max);
-        let needed = ((self.run.dt as f32 * fastest / TURNS) as u32).saturating_add(1);
-        let many = || {
-            format!(
-                "it pulls at a body that another rope pulls at too: they turn it to and fro by {fastest:.0} rad/s, and throw it about in few sub-steps; run.substeps of {needed} are enough"
-            )
-        };
-        (needed > self.substeps()).then(many)
-    }
-
-    /// The boxes that a body with such a number is of.
-    fn boxes_of(&self, number: u32) -> Option<&Boxes> {
-        let mut left = u64::from(number);
-        self.boxes.iter().find(|boxes| {
-            let is_here = left < boxes.number();
-            left = left.saturating_sub(boxes.number());
-            is_here
-        })
-    }
-
     /// A remark on what reaches out of the room through one side and not through the opposite one, where it would come in again.
     fn reaches_out(&self, item: &Item) -> Option<String> {
         let stands = item.group.is_none() && item.motion.is_none();
@@ -267,7 +215,7 @@ impl SceneFile {
     }
 
     /// The sum of all gravity \[m/s²\].
-    fn pull(&self) -> Vec3 {
+    pub(super) fn pull(&self) -> Vec3 {
         self.forces.iter().fold(Vec3::ZERO, |sum, force| match force {
             ForceKind::Gravity(gravity) => sum + gravity.acceleration,
             _ => sum,

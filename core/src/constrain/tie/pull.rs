@@ -80,7 +80,9 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
     fn postpone(&self, bodies: &mut Bodies<'_>, (end, kept): (usize, &[u32]), grip: &Grip, pull: Vec3) {
         let tie = self.ties(kept).find(|(number, ..)| *number == end);
         if let Some((_, tie, place)) = tie.filter(|_| pull != Vec3::ZERO) {
-            tie.push(bodies, place, grip, pull, |bodies, row, by| bodies.postpone(row, by));
+            tie.push(bodies, place, grip, pull, |bodies, row, by| {
+                bodies.postpone(row, by);
+            });
         }
     }
 

@@ -1,0 +1,79 @@
+//! Bodies that hang from each other by ropes, as a file declares them: how fast the ropes turn them to and fro.
+
+use super::{Body, Boxes, Cord, SceneFile};
+use crate::constrain::{root, unite};
+use crate::math::{length, max, sqrt};
+use alloc::format;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+use glam::Vec3;
+
+/// Radians that a body may turn by in a sub-step, as measured for up to eight below each other, and for some of a hundred times the weight of what bears them.
+const TURNS: f32 = 0.8;
+
+/// The numbers of the bodies that a rope is tied to.
+fn bodies(cord: &Cord) -> impl Iterator<Item = u32> {
+    let body = |end| if let Body::Box(number) = end { Some(number) } else { None };
+    cord.ends.into_iter().flatten().filter_map(body)
+}
+
+impl SceneFile {
+    /// A remark on bodies that more than one rope pulls at, with the number of the rope that turns one fastest: of mass m and with d as the smallest diagonal of its sides, between ropes of
+    /// length L that pull with T, it turns by ω² = T a (1 + a / L) / I, with a = d / 2 and I = m d² / 12. T is at most the weight of all that hangs together.
+    pub(super) fn hung_in_turn(&self) -> Option<(usize, String)> {
+        let mut names: Vec<u32> = self.ropes.iter().flat_map(bodies).collect();
+        names.sort_unstable();
+        names.dedup();
+        let free: Vec<_> = names.iter().map(|&name| self.boxes_of(name).filter(|boxes| !boxes.fixed)).collect();
+        let places = |cord| {
+            let place = |name| names.binary_search(&name).ok().filter(|&place| free[place].is_some());
+            bodies(cord).filter_map(place)
+        };
+        let (mut ropes, mut bound) = (vec![0u32; names.len()], Vec::from_iter(0..names.len() as u32));
+        for cord in &self.ropes {
+            places(cord).for_each(|place| ropes[place] += 1);
+            if let (Some(one), Some(other)) = (places(cord).next(), places(cord).nth(1)) {
+                unite(&mut bound, one as u32, other as u32);
+            }
+        }
+        let mut loads = vec![0.0; names.len()];
+        for (place, boxes) in free.iter().enumerate() {
+            loads[root(&mut bound, place as u32) as usize] += boxes.map_or(0.0, |boxes| boxes.mass);
+        }
+        let mut fastest = (0, 0.0);
+        for (number, cord) in self.ropes.iter().enumerate() {
+            let long = cord.curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
+            for place in places(cord).filter(|&place| ropes[place] > 1) {
+                let load = loads[root(&mut bound, place as u32) as usize] * length(self.pull());
+                let turn = free[place].map_or(0.0, |boxes| turn(boxes, load, long));
+                fastest = if turn > fastest.1 { (number, turn) } else { fastest };
+            }
+        }
+        let (number, turn) = fastest;
+        let needed = ((self.run.dt as f32 * turn / TURNS) as u32).saturating_add(1);
+        let says = || {
+            format!(
+                "it pulls at a body that another rope pulls at too: they turn it to and fro by {turn:.0} rad/s, and throw it about in few sub-steps; run.substeps of {needed} are enough"
+            )
+        };
+        (needed > self.substeps()).then(|| (number, says()))
+    }
+
+    /// The boxes that a body with such a number is one of.
+    fn boxes_of(&self, number: u32) -> Option<&Boxes> {
+        let mut left = u64::from(number);
+        self.boxes.iter().find(|boxes| {
+            let is_here = left < boxes.number();
+            left = left.saturating_sub(boxes.number());
+            is_here
+        })
+    }
+}
+
+/// How fast ropes so long \[m\] turn a body to and fro under such a load \[N\], at the most \[rad/s\].
+fn turn(boxes: &Boxes, load: f32, long: f32) -> f32 {
+    let Vec3 { x, y, z } = boxes.sides * boxes.sides;
+    let across = sqrt(x + y + z - max(max(x, y), z));
+    sqrt(load / boxes.mass * (6.0 / across + 3.0 / long))
+}
