@@ -3,6 +3,8 @@
 
 #[path = "extend/custom.rs"]
 mod custom;
+#[path = "extend/repeats.rs"]
+mod repeats;
 
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};

@@ -765,6 +765,7 @@ fn files_grow_strands_that_go_with_what_moves() {
         (r#""length": 0.2"#, r#""length": -1"#),
         (r#""pitch": 0.05"#, r#""pitch": 0"#),
         ("[[0, 0, 0], [1, 0, 0], [1, 1, 0]]", "[[0, 0, 0]]"),
+        ("[[0, 0, 0], [1, 0, 0], [1, 1, 0]]", "[[0, 0, 0], [1, 0, 0], [0, 0, 0]]"),
         (r#""count": 7"#, r#""count": 4000000000"#),
     ] {
         let file = SceneFile::from_json("a.json", &text.replace(wrong, why)).expect("it is a scene");

@@ -242,6 +242,41 @@ fn bodies_on_two_ropes_are_remarked_on() {
     }
 }
 
+/// What hangs from points of a sheet that are light for it is remarked on, with as many sub-steps as leave no remark: whether a box or a particle, whoever is tied to whom.
+#[test]
+fn loads_on_light_points_of_sheets_are_remarked_on() {
+    let folder = Folder::new();
+    let told = |substeps: u32, fixed: &str, mass: f32, tie: &str| {
+        let scene = format!(
+            r#"{{"run": {{"substeps": {substeps}}}, "forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}],
+            "particles": [{{"position": [0.5, 0, 0], "mass": {mass}}}],
+            "cloths": [{{"form": {{"sheet": {{"corner": [0, 1, 0], "sides": [[1, 0, 0], [0, -1, 0]], "cells": [9, 9]}}}},
+                "density": 0.2, "fixed": {fixed}, "shell": {{"stretch": [3000, 3000], "shear": 600, "bending": 1e-5}}}}],
+            "boxes": [{{"sides": [1, 0.1, 0.1], "mass": {mass}, "position": [0.5, -0.05, 0]}}], "ties": [{tie}]}}"#
+        );
+        folder.write("a.json", scene);
+        let answer = folder.run("run a.json --steps 1");
+        let told = answer.warnings().into_iter().find(|warning| warning.contains("hang from points"));
+        told.map(|text| {
+            text.split("run.substeps of ").nth(1).unwrap().split(' ').next().unwrap().parse::<u32>().unwrap()
+        })
+    };
+    let held = "[0, 9]";
+    let ties = [
+        r#"{"of": {"cloth": 0}, "points": [90, 99], "to": {"box": 0}}"#,
+        r#"{"points": [0], "to": {"cloth": 0}}"#,
+        r#"{"of": {"box": 0}, "points": [0, 1], "to": {"cloth": 0}}"#,
+    ];
+    for tie in ties {
+        let enough = told(1, held, 0.5, tie).unwrap();
+        assert!(enough > 5, "{tie}: {enough}");
+        assert_eq!(told(enough, held, 0.5, tie), None, "{tie}");
+        assert_eq!(told(enough - 1, held, 0.5, tie), Some(enough), "{tie}");
+        assert_eq!(told(1, held, 0.001, tie), None, "{tie}");
+        assert_eq!(told(1, "[]", 0.5, tie), None, "{tie}");
+    }
+}
+
 /// Whatever it begins with, a scene is remarked on if its capacity is less than all of that, and only then.
 #[test]
 fn a_capacity_below_the_beginning_is_remarked_on() {

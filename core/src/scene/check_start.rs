@@ -3,9 +3,10 @@
 use super::check_shape::check_shape;
 use super::filling::MOST_OF_SOFT;
 use super::numbers::{Checked, above_zero, check_breaking, finite, zero_or_more};
+use super::tuft::along;
 use super::{Air, BoxForm, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
 use crate::cloth::{ClothSprings, Sheet};
-use crate::math::length;
+use crate::math::{dot, length};
 use crate::motion::Motion;
 use alloc::format;
 use alloc::vec::Vec;
@@ -323,11 +324,26 @@ impl Tuft {
                 if !(way > 0.0 && way.is_finite()) {
                     return refuse("form.curve", "has to lead through two places at least that are not the same");
                 }
+                let points = along(places, self.segments);
+                if let Some(before) = points.windows(3).position(turns_back) {
+                    let message = format!(
+                        "turns back onto itself at point {}: give it a bend, or other segments than {}",
+                        before + 1,
+                        self.segments
+                    );
+                    return refuse("form.curve", &message);
+                }
             }
             Growth::On(field) => field.check(&format!("{at}.form.on"))?,
         }
         file.check_material(at, self.material)
     }
+}
+
+/// Tells whether three places of a strand turn back, so that there is no telling to which side it bends.
+fn turns_back(places: &[Vec3]) -> bool {
+    let [one, other] = [places[1] - places[0], places[2] - places[1]];
+    !(dot(one, other) > -0.9999 * length(one) * length(other))
 }
 
 impl Tuft {

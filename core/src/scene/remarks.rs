@@ -61,6 +61,9 @@ impl SceneFile {
             add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
             add(format_args!("cloths[{i}]"), self.long_for_plate(cloth));
         }
+        for (i, tie) in self.ties.iter().enumerate() {
+            add(format_args!("ties[{i}].to"), self.hung_on_sheet(tie));
+        }
         // All such ropes are of one kind to whoever reads it.
         if let Some((i, remark)) = self.hung_in_turn() {
             add(format_args!("ropes[{i}].ends"), Some(remark));
@@ -193,7 +196,7 @@ impl SceneFile {
                 "it is so stiff that what it stretches by as it bends in a sub-step outweighs it: it hangs too far, or shakes; run.substeps of {needed} are enough"
             )
         };
-        (excess > 1.0).then(shakes)
+        (excess > 1.0 && excess < f32::INFINITY).then(shakes)
     }
 
     /// A remark on what reaches out of the room through one side and not through the opposite one, where it would come in again.
