@@ -95,7 +95,7 @@ fn bodies_below_each_other_swing_alike_in_few_sub_steps() {
     }
 }
 
-/// What nobody holds keeps its momenta, and gains no energy, while its ropes are solved again and again.
+/// Bodies that nobody holds keep their momenta, and gain no energy, while their ropes are solved again and again.
 #[test]
 fn free_bodies_on_several_ropes_keep_their_momenta() {
     for (masses, segments, substeps, method) in [

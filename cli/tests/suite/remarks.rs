@@ -242,7 +242,7 @@ fn bodies_on_two_ropes_are_remarked_on() {
     }
 }
 
-/// What hangs from points of a sheet that are light for it is remarked on, with as many sub-steps as leave no remark: whether a box or a particle, whoever is tied to whom.
+/// Loads that hang from points of a sheet that are light for them are remarked on, with as many sub-steps as leave no remark: whether a box or a particle, whoever is tied to whom.
 #[test]
 fn loads_on_light_points_of_sheets_are_remarked_on() {
     let folder = Folder::new();

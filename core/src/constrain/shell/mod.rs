@@ -45,7 +45,7 @@ use words::structs;
 
 /// A thin shell of triangles, in the shape in which it begins at rest.
 ///
-/// What is clamped, by triangles whose corners are all fixed as it begins, bends from their edge on.
+/// A shell that is clamped, by triangles whose corners are all fixed as it begins, bends from their edge on.
 ///
 /// In its plane each triangle resists Green's strain along warp, weft and between them; out of it the curvature that the angles
 /// over its three edges make, less that at rest: ½ B A |S − S₀|², with S = Σ θ n nᵀ / height (Grinspun, Gingold, Reisman and Zorin,

@@ -1,4 +1,4 @@
-//! What a tied rope pulls at the bodies of its ends: solved with these as heavy as they are there, and again where other ropes have pulled them since.
+//! Pulls of a tied rope at the bodies of its ends: solved with these as heavy as they are there, and again where other ropes have pulled them since.
 
 use super::super::bodies::Change;
 use super::super::rope::Held;
@@ -14,10 +14,10 @@ use glam::Vec3;
 const NEAR: f32 = 1e-4;
 const ROUNDINGS: f32 = 16.0;
 
-/// What a rope does in a phase.
+/// A rope's part in a phase.
 type Phase<P, L> = fn(&Rope<P, L>, &mut Bodies<'_>, &mut Share<'_>, &[Option<Held>]);
 
-/// What a tie does in a phase.
+/// A tie's part in a phase.
 type TiePhase<T, W> = fn(&Tie<T, W>, &mut Bodies<'_>, &[u32]) -> Option<()>;
 
 /// A tied end of a rope while that is solved.
@@ -96,13 +96,13 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>, T: AsRef<[u32]>, W: AsRef<[f32]>> TiedRop
         }
     }
 
-    /// What lasts through a sub-step: the impulse that the rope has pulled with at each end \[kg m\], and what of it is put off until velocities are settled \[kg m/s\]; and where
+    /// The memory that lasts through a sub-step: the impulse that the rope has pulled with at each end \[kg m\], and what of it is put off until velocities are settled \[kg m/s\]; and where
     /// each of its particles was before, and how fast.
     fn memory<'m>(&self, step: &'m mut [u32]) -> (&'m mut [[Vec3; 2]], &'m mut [[Vec3; 2]]) {
         let mut step = step;
         let pulls = take_vectors(&mut step, 4);
         let before = take_vectors(&mut step, 2 * self.rope.particles.as_ref().len());
-        (bytemuck::cast_slice_mut(pulls), bytemuck::cast_slice_mut(before))
+        (pulls.as_chunks_mut().0, before.as_chunks_mut().0)
     }
 
     /// Words that last through a sub-step.
