@@ -54,6 +54,7 @@ mod pieces;
 mod rays;
 mod reapers;
 mod rigid;
+mod rocking;
 mod rolling;
 mod rooms;
 mod rope_energy;

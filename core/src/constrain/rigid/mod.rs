@@ -12,6 +12,7 @@ mod compound;
 mod cut;
 mod facets;
 mod fly;
+mod foremost;
 mod forms;
 mod fours;
 mod hull;

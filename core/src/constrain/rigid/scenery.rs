@@ -3,6 +3,7 @@
 use super::super::Bodies;
 use super::body::Body;
 use super::facets::{Spot, Spots, four, push};
+use super::foremost::{Over, Seen};
 use super::forms::{Form, Forms};
 use super::manifold::{DIRECTIONS, Manifold, POINTS, Point};
 use super::skin;
@@ -26,6 +27,8 @@ struct Visit<'a> {
     slots: &'a mut [Manifold],
     before: [Manifold; DIRECTIONS],
     reach: f32,
+    /// True if it is on something round, where places move as it turns.
+    is_on_round: bool,
 }
 
 /// Looks where a body touches the scenery, or will within two sub-steps, if it has gone far enough since the last time, or the scenery may have.
@@ -63,7 +66,8 @@ pub(super) fn meet(
     }
     let Ok(&before) = <&[Manifold; DIRECTIONS]>::try_from(&*slots) else { return };
     clear(body, slots);
-    let mut visit = Visit { body, forms, number, piece: 0, form: forms.piece(number, 0), slots, before, reach };
+    let mut visit =
+        Visit { body, forms, number, piece: 0, form: forms.piece(number, 0), slots, before, reach, is_on_round: false };
     let count = forms.count(number);
     for piece in 0..count {
         let form = forms.piece(number, piece);
@@ -76,7 +80,7 @@ pub(super) fn meet(
     }
     // Slots are taken one after the other.
     let met = visit.slots.iter().filter(|slot| slot.count > 0).count() as u32;
-    body.spare = if is_carried(visit.slots) { 0.0 } else { small };
+    body.spare = if visit.is_on_round || is_carried(visit.slots) { 0.0 } else { small };
     body.met = met;
 }
 
@@ -195,17 +199,24 @@ impl Visit<'_> {
             left_out += u64::from(near.push(*contact).is_err());
         });
         bodies.report.caps.contacts += left_out;
-        for contact in &near {
-            let place = body.place(contact.point);
-            let (on, out, distance) = self.form.nearest(body, place);
+        for &contact in &near {
+            let seen = Seen::of(&self.form, body, contact);
+            // What is round may come up to the body elsewhere.
+            let rises = length(half) * seen.leans(body);
+            if seen.distance > self.reach + rises || self.support(&contact, seen.normal(body)).is_none() {
+                continue;
+            }
+            let over = Over { form: &self.form, body, colliders: bodies.colliders, at };
+            let (Seen { contact, on, out, distance }, is_round) = over.foremost(seen);
             if distance > self.reach || !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) {
                 continue;
             }
             let normal = body.rotation * -out;
             if dot(normal, contact.normal) > 0.0
-                && let Some(normal) = self.support(contact, normal)
+                && let Some(normal) = self.support(&contact, normal)
             {
-                self.put(bodies, &Contact { normal, ..*contact }, on);
+                self.is_on_round |= is_round;
+                self.put(bodies, &Contact { normal, ..contact }, on);
                 self.rims(bodies, normal, [on, out]);
             }
         }
