@@ -1,5 +1,6 @@
 //! The particles as a constraint sees and moves them.
 
+use super::load::Load;
 use crate::custom::CustomColumnsMut;
 use crate::index::{IndexChoice, Room, between};
 use crate::material::MaterialList;
@@ -92,6 +93,8 @@ pub struct Bodies<'a> {
     pub(crate) bound: &'a mut [u32],
     /// How much faster each will be made as velocities are settled \[m/s\]; empty where nobody puts anything off.
     pub(crate) postponed: &'a mut [Vec3],
+    /// What each bears; empty where nobody lays anything on others.
+    pub(crate) loads: &'a mut [Load],
     pub(crate) observer: &'a mut dyn Observer,
 }
 
@@ -176,15 +179,6 @@ impl Bodies<'_> {
             self.position[row] - self.before[0][row] - self.velocity[row] * h
         } else {
             Vec3::ZERO
-        }
-    }
-
-    /// Moves a particle that is held to where its velocity leads, so that what hangs still shows no speed: a constraint answers forces by what they do
-    /// in a whole sub-step, as a method of first order shows it, and methods of higher order go half as far.
-    pub(crate) fn catch_up(&mut self, row: usize) {
-        let lead = self.lead(row, self.substep.seconds());
-        if lead.is_finite() {
-            self.position[row] -= lead;
         }
     }
 

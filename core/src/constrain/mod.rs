@@ -15,6 +15,7 @@ mod distance;
 mod inertia;
 #[cfg(feature = "alloc")]
 mod kind;
+mod load;
 mod moved;
 mod rate;
 mod rigid;
@@ -170,6 +171,7 @@ fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment
                 bodies.bound.fill(0);
                 constraints.bind(&mut bodies);
             }
+            bodies.loads.fill(bytemuck::Zeroable::zeroed());
             constraints.prepare(&mut bodies, &mut share);
         }
         Moment::After => {

@@ -64,6 +64,7 @@ impl Moved<'_> {
         let bound = take(&mut step, self.layout.names());
         let named = len.min(bound.len());
         let postponed = take_vectors(&mut step, self.layout.postponed());
+        let loads = take(&mut step, self.layout.loads());
         let bodies = Bodies {
             position: self.position,
             velocity: self.velocity,
@@ -87,6 +88,7 @@ impl Moved<'_> {
             marks: self.marks,
             bound: &mut bound[..named],
             postponed,
+            loads: bytemuck::cast_slice_mut(loads),
             observer: self.observer,
         };
         (bodies, Share { kept, step, scratch, capacity })

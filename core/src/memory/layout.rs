@@ -4,6 +4,9 @@ use crate::index::{ARE_KEPT, IndexChoice, Lasting, StateIndex, index_words};
 use crate::math::quotient;
 use glam::Vec3;
 
+/// The words that say what a particle bears.
+pub(crate) const LOAD_WORDS: usize = 10;
+
 /// So many words of 32 bits for each particle, and so many besides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Words {
@@ -59,6 +62,8 @@ pub struct Demand {
     pub binds: bool,
     /// True if it puts changes of velocities off until all are settled ([`Bodies::postpone`](crate::constrain::Bodies::postpone)).
     pub postpones: bool,
+    /// True if it lays anything on particles that others bear ([`Bodies::lay_on`](crate::constrain::Bodies::lay_on)).
+    pub loads: bool,
 }
 
 impl Demand {
@@ -70,6 +75,7 @@ impl Demand {
         finds_near: false,
         binds: false,
         postpones: false,
+        loads: false,
     };
 
     /// The demand of two parts together.
@@ -82,13 +88,14 @@ impl Demand {
             finds_near: self.finds_near || other.finds_near,
             binds: self.binds || other.binds,
             postpones: self.postpones || other.postpones,
+            loads: self.loads || other.loads,
         }
     }
 
-    /// The same, with words through the step for each particle, before all others: the name by which it is bound, if anybody binds particles, and what is
-    /// put off of its velocity, if anybody does that.
+    /// The same, with words through the step for each particle, before all others: the name by which it is bound, if anybody binds particles, what is
+    /// put off of its velocity, and what it bears, if anybody does that.
     pub(crate) fn with_shared(mut self) -> Self {
-        let shared = usize::from(self.binds) + 3 * usize::from(self.postpones);
+        let shared = usize::from(self.binds) + 3 * usize::from(self.postpones) + LOAD_WORDS * usize::from(self.loads);
         self.step.per_row = self.step.per_row.saturating_add(shared);
         self
     }
@@ -294,6 +301,11 @@ impl Layout {
     /// The vectors through the step that are changes of velocities put off.
     pub(crate) fn postponed(&self) -> usize {
         if self.plan.constraints.postpones { self.capacity } else { 0 }
+    }
+
+    /// The words through the step that say what particles bear.
+    pub(crate) fn loads(&self) -> usize {
+        if self.plan.constraints.loads { LOAD_WORDS * self.capacity } else { 0 }
     }
 
     /// The number of particles that there is room for.

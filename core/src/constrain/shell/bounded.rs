@@ -18,6 +18,8 @@ const SUMS: usize = 8;
 /// The share of its energy that what is pressed by walls may gain in a sub-step: that much is rounding, and what solutions are cut off at. What gains
 /// more has turned too far for the directions of the beginning.
 const EVEN: f32 = 1e-3;
+/// Rounds in which a piece that bears something is brought to its momenta.
+const LADEN_ROUNDS: u32 = 4;
 /// How often the way of what is pressed by walls is halved.
 const SHORTENED: u32 = 6;
 /// The sine of the angle by which a wall has to lean out of others to be another.
@@ -47,12 +49,18 @@ impl Solver<'_> {
         };
         for piece in pieces.each() {
             let members = || piece.members.iter().map(|&number| number as usize);
-            if self.is_free(members()) {
-                self.keep_momenta(bodies, &piece);
+            let is_laden = piece.rows.iter().any(|&row| bodies.load(row as usize) > 0.0);
+            if self.is_free(members()) && is_laden {
+                // What it bears gives it energy, and takes some.
+                roll.budget(&piece).forget();
+                self.keep_momenta(bodies, &piece, true);
+                self.act(bodies, members());
+            } else if self.is_free(members()) {
+                self.keep_momenta(bodies, &piece, false);
                 self.act_freely(bodies, &piece, roll.budget(&piece));
             } else {
                 roll.budget(&piece).forget();
-                if piece.triangles.is_empty() || !self.leans(members()) {
+                if piece.triangles.is_empty() || is_laden || !self.leans(members()) {
                     self.act(bodies, members());
                 } else {
                     self.act_on_walls(bodies, &piece);
@@ -82,8 +90,9 @@ impl Solver<'_> {
         }
     }
 
-    /// Takes from the shifts of a piece what they would change of its momenta: Σ m Δx and Σ m (x − v h) × Δx are none then.
-    fn keep_momenta(&mut self, bodies: &Bodies<'_>, piece: &Piece<'_>) {
+    /// Takes from the shifts of a piece what they would change of its momenta: Σ m Δx and Σ m (x − v h) × Δx are none then, with all that it bears. What is beside the
+    /// particle that bears it is heavy elsewhere than what is taken tells, so that this takes another round.
+    fn keep_momenta(&mut self, bodies: &Bodies<'_>, piece: &Piece<'_>, is_laden: bool) {
         let Vectors { weight, shift, .. } = &mut self.vectors;
         let Some(&origin) = piece.rows.first() else { return };
         let (h, origin) = (bodies.substep.seconds(), origin as usize);
@@ -91,23 +100,26 @@ impl Solver<'_> {
             bodies.position[row] - bodies.position[origin] - (bodies.velocity[row] - bodies.velocity[origin]) * h
         };
         let all = || piece.members.iter().zip(piece.rows).map(|(&number, &row)| (number as usize, row as usize));
-        let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
-        for (number, row) in all() {
-            mass += 1.0 / weight[number];
-            middle += place(row) / weight[number];
-            drift += shift[number] / weight[number];
-        }
-        let (middle, drift) = (middle / mass, drift / mass);
-        let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
-        for (number, row) in all() {
-            let arm = place(row) - middle;
-            torque += arm.cross(shift[number] - drift) / weight[number];
-            spread += outer(arm / weight[number], arm);
-        }
-        let turn = turn_of(spread, torque);
-        for (number, row) in all() {
-            let by = drift + turn.cross(place(row) - middle);
-            shift[number] -= if by.is_finite() { by } else { Vec3::ZERO };
+        for _ in 0..if is_laden { LADEN_ROUNDS } else { 1 } {
+            let (mut mass, mut middle, mut drift) = (0.0, Vec3::ZERO, Vec3::ZERO);
+            for (number, row) in all() {
+                mass += 1.0 / weight[number];
+                middle += place(row) / weight[number];
+                drift += shift[number] / weight[number];
+            }
+            let (middle, drift) = (middle / mass, drift / mass);
+            let (mut torque, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+            for (number, row) in all() {
+                let arm = place(row) - middle;
+                torque += arm.cross(shift[number] - drift) / weight[number];
+                torque += bodies.load_moment(row).cross(shift[number]);
+                spread += outer(arm / weight[number], arm);
+            }
+            let turn = turn_of(spread, torque);
+            for (number, row) in all() {
+                let by = drift + turn.cross(place(row) - middle);
+                shift[number] -= if by.is_finite() { by } else { Vec3::ZERO };
+            }
         }
     }
 

@@ -296,6 +296,7 @@ where
             self.learn(bodies, share.kept.fixed, share.scratch);
         }
         self.update(bodies, share.kept.fixed, share.scratch);
+        bodies.bear_all(self.particles.as_ref());
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
@@ -341,6 +342,7 @@ where
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);
         solver.act_within(bodies, &mut roll, rest);
+        solver.tell_loads(bodies);
         solver.leave(bodies);
     }
 

@@ -67,7 +67,7 @@ impl<'m> Vectors<'m> {
             let sound = |row: usize| bodies.position[row].is_finite() && bodies.velocity[row].is_finite();
             let found = found.filter(|&row| sound(row));
             *row = found.map_or(NOBODY, |row| row as u32);
-            let inverse = found.map_or(0.0, |row| bodies.inverse_mass[row]);
+            let inverse = found.map_or(0.0, |row| bodies.laden_inverse(row));
             *weight = if inverse > 0.0 && inverse < f32::INFINITY { inverse } else { 0.0 };
         }
         shift.fill(Vec3::ZERO);
@@ -146,6 +146,16 @@ impl Solver<'_> {
     pub(super) fn leave(&mut self, bodies: &Bodies<'_>) {
         for (left, &row) in self.left.iter_mut().zip(&*self.vectors.rows) {
             *left = bodies.position.get(row as usize).copied().unwrap_or(Vec3::NAN);
+        }
+    }
+
+    /// Says how far it has moved particles that bear something.
+    pub(super) fn tell_loads(&self, bodies: &mut Bodies<'_>) {
+        let Vectors { rows, weight, shift, met, .. } = &self.vectors;
+        for (i, &row) in rows.iter().enumerate().filter(|&(i, &row)| row != NOBODY && weight[i] > 0.0) {
+            if bodies.load(row as usize) > 0.0 {
+                bodies.note_borne(row as usize, shift[i] + met[i]);
+            }
         }
     }
 

@@ -109,6 +109,12 @@ impl Grip {
         self.shared * pull + self.turn(pull).cross(self.arm)
     }
 
+    /// How heavy the place is at the least, in any direction \[kg\]: infinitely, if nothing moves it.
+    pub(super) fn least_mass(&self) -> f32 {
+        let ways = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| self.given_way(axis).abs());
+        1.0 / (ways[0] + ways[1] + ways[2]).max_element()
+    }
+
     /// How heavy the place is for a particle of such a mass \[kg\] that is joined to it; none if that is no number.
     pub(super) fn held(&self, own: f32) -> Option<Held> {
         let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| self.given_way(axis));

@@ -3,9 +3,9 @@
 #[cfg(feature = "alloc")]
 use super::super::declared::{Declared, inverse_mass, twice};
 use super::super::{Bodies, Constraint, Demand, Share, Words};
-use super::Tie;
 use super::grip::Grip;
 use super::place::{offset, weights};
+use super::{Tie, laden};
 use crate::index::between;
 use crate::math::{largest, length, max};
 #[cfg(feature = "alloc")]
@@ -15,9 +15,16 @@ use glam::Vec3;
 /// Rounds at the most where there is an offset, whose direction is not linear in the places.
 const ROUNDS: u32 = 6;
 /// How far a rigid tie may be off after all rounds, a share of the size of what it ties: what is left is rounding.
-const NEARLY: f32 = 1e-4;
+pub(super) const NEARLY: f32 = 1e-4;
 
 impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
+    /// Learns where the place is, if that is not known.
+    pub(super) fn know(&self, bodies: &Bodies<'_>, share: &mut Share<'_>) {
+        if share.claim(*b"tie ", &[self.to.as_ref().len(), self.given().len()]) {
+            self.learn(bodies, share.kept.fixed);
+        }
+    }
+
     /// Brings the particle to its place, or so near that the compliance is met.
     pub(super) fn close(&self, bodies: &mut Bodies<'_>, place: &[u32]) -> Option<()> {
         let h = bodies.substep.seconds();
@@ -116,7 +123,8 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
 
 impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Constraint for Tie<T, W> {
     fn demand(&self) -> Demand {
-        Demand { kept: Words { per_row: 0, fixed: self.words() }, ..Demand::NONE }
+        let words = |fixed| Words { per_row: 0, fixed };
+        Demand { kept: words(self.words()), step: words(laden::STEP), loads: true, ..Demand::NONE }
     }
 
     fn is_empty(&self) -> bool {
@@ -124,13 +132,25 @@ impl<T: AsRef<[u32]> + Sync, W: AsRef<[f32]> + Sync> Constraint for Tie<T, W> {
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        if share.claim(*b"tie ", &[self.to.as_ref().len(), self.given().len()]) {
-            self.learn(bodies, share.kept.fixed);
-        }
+        self.know(bodies, share);
+        self.hold_both(bodies);
+    }
+
+    fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        self.lay_on_both(bodies, share.kept.fixed, share.step);
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+        let _ = self.follow(bodies, share.kept.fixed, share.step);
         let _ = self.close(bodies, share.kept.fixed);
+    }
+
+    fn repeats(&self) -> bool {
+        self.compliance == 0.0
+    }
+
+    fn project_again(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) -> bool {
+        self.close_again(bodies, share.kept.fixed, share.step).unwrap_or(false)
     }
 
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -2,6 +2,7 @@
 
 mod grip;
 mod hold;
+mod laden;
 mod place;
 mod pull;
 mod rope;

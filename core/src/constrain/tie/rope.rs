@@ -87,7 +87,8 @@ where
         }
         let rope = self.rope.demand_held();
         let own = Demand { step: rope.step.and(Words { per_row: 0, fixed: self.words() }), postpones: true, ..rope };
-        self.ends.iter().flatten().fold(own, |sum, tie| sum.and(tie.demand()))
+        let all = self.ends.iter().flatten().fold(own, |sum, tie| sum.and(tie.demand()));
+        Demand { loads: false, ..all }
     }
 
     fn is_empty(&self) -> bool {
@@ -100,7 +101,7 @@ where
         }
         let mut parts = share.parts();
         for tie in self.ends.iter().flatten() {
-            tie.prepare(bodies, &mut parts.next(tie.demand()));
+            tie.know(bodies, &mut parts.next(tie.demand()));
         }
     }
 

@@ -1,0 +1,120 @@
+//! What particles bear beside their own mass, so that who solves for many of them at once feels how heavy that is.
+
+use super::Bodies;
+use crate::memory::LOAD_WORDS;
+use glam::Vec3;
+
+/// What a particle bears in a sub-step.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(crate) struct Load {
+    /// How heavy all of it is \[kg\].
+    mass: f32,
+    /// The sum of the masses by how far each is beside the particle, as the sub-step began \[kg m\].
+    moment: Vec3,
+    /// How far the particle has been moved with it \[m\].
+    way: Vec3,
+    /// Whether a constraint bears what is laid on the particle, and how many hold the particle, or the body that it is the first of.
+    bears: u32,
+    holders: u32,
+    /// Whether the particle has been moved to where its velocity leads.
+    caught_up: u32,
+}
+
+const _: () = assert!(size_of::<Load>() == 4 * LOAD_WORDS);
+
+impl Bodies<'_> {
+    /// Says as a sub-step is prepared that a constraint bears what is laid on a particle: it solves for the particle with [that](Self::load), and
+    /// [tells](Self::note_borne) how far it has moved both.
+    pub fn bear(&mut self, row: usize) {
+        if let Some(load) = self.loads.get_mut(row) {
+            load.bears = 1;
+        }
+    }
+
+    /// Moves a particle that is held to where its velocity leads, so that what hangs still shows no speed: a constraint answers forces by what they do
+    /// in a whole sub-step, as a method of first order shows it, and methods of higher order go half as far.
+    pub(crate) fn catch_up(&mut self, row: usize) {
+        let lead = self.lead(row, self.substep.seconds());
+        if lead.is_finite() {
+            self.position[row] -= lead;
+        }
+        if let Some(load) = self.loads.get_mut(row) {
+            load.caught_up = 1;
+        }
+    }
+
+    /// Bears all that is laid on particles by their place in the scene's start.
+    pub(super) fn bear_all(&mut self, particles: &[u32]) {
+        let particles = if self.loads.is_empty() { &[] } else { particles };
+        for &particle in particles {
+            if let Some(row) = self.row_of_start(particle) {
+                self.bear(row);
+            }
+        }
+    }
+
+    /// Tells whether what is laid on a particle is borne.
+    #[must_use]
+    pub fn is_borne(&self, row: usize) -> bool {
+        self.loads.get(row).is_some_and(|load| load.bears > 0)
+    }
+
+    /// Says as a sub-step is prepared that one more constraint holds a particle, or the body of which it is the first, to others.
+    pub fn hold(&mut self, row: usize) {
+        if let Some(load) = self.loads.get_mut(row) {
+            load.holders += 1;
+        }
+    }
+
+    /// How many constraints hold a particle, or the body of which it is the first: each bears its part.
+    #[must_use]
+    pub fn holders(&self, row: usize) -> u32 {
+        self.loads.get(row).map_or(1, |load| load.holders.max(1))
+    }
+
+    /// Lays something on a particle as a sub-step begins, so heavy \[kg\] and so far beside it as that began \[m\]: infinitely heavy, if nothing moves it.
+    pub fn lay_on(&mut self, row: usize, mass: f32, beside: Vec3) {
+        if let Some(load) = self.loads.get_mut(row).filter(|_| mass > 0.0) {
+            load.mass += mass;
+            load.moment += if mass < f32::INFINITY && beside.is_finite() { beside * mass } else { Vec3::ZERO };
+        }
+    }
+
+    /// How heavy what is laid on a particle is \[kg\].
+    #[must_use]
+    pub fn load(&self, row: usize) -> f32 {
+        self.loads.get(row).map_or(0.0, |load| load.mass)
+    }
+
+    /// The moment of what is laid on a particle about it, as the sub-step began \[kg m\].
+    #[must_use]
+    pub fn load_moment(&self, row: usize) -> Vec3 {
+        self.loads.get(row).map_or(Vec3::ZERO, |load| load.moment)
+    }
+
+    /// The inverse mass of a particle with all that is laid on it \[1/kg\].
+    #[must_use]
+    pub fn laden_inverse(&self, row: usize) -> f32 {
+        let (inverse, load) = (self.inverse_mass[row], self.load(row));
+        if load > 0.0 && inverse > 0.0 { inverse / (1.0 + inverse * load) } else { inverse }
+    }
+
+    /// Tells how far a particle has been moved with what is laid on it \[m\]: whoever has laid it there gives that the impulse.
+    pub fn note_borne(&mut self, row: usize, by: Vec3) {
+        if let Some(load) = self.loads.get_mut(row).filter(|_| by.is_finite()) {
+            load.way += by;
+        }
+    }
+
+    /// Tells whether a particle has been moved to where its velocity leads, as it is held: what is laid on it then has to be as well.
+    pub(super) fn is_caught_up(&self, row: usize) -> bool {
+        self.loads.get(row).is_some_and(|load| load.caught_up > 0)
+    }
+
+    /// How far a particle has been moved with what is laid on it \[m\].
+    #[must_use]
+    pub fn borne_way(&self, row: usize) -> Vec3 {
+        self.loads.get(row).map_or(Vec3::ZERO, |load| load.way)
+    }
+}
