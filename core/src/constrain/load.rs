@@ -12,8 +12,8 @@ pub(crate) struct Load {
     mass: f32,
     /// The sum of the masses by how far each is beside the particle, as the sub-step began \[kg m\].
     moment: Vec3,
-    /// How far the particle has been moved with it \[m\].
-    way: Vec3,
+    /// How far the particle has been moved with it \[m\], and how much faster \[m/s\].
+    by: [Vec3; 2],
     /// Whether a constraint bears what is laid on the particle, and how many hold the particle, or the body that it is the first of.
     bears: u32,
     holders: u32,
@@ -23,9 +23,16 @@ pub(crate) struct Load {
 
 const _: () = assert!(size_of::<Load>() == 4 * LOAD_WORDS);
 
+impl Load {
+    /// How heavy all of it is \[kg\].
+    pub(super) fn mass(&self) -> f32 {
+        self.mass
+    }
+}
+
 impl Bodies<'_> {
     /// Says as a sub-step is prepared that a constraint bears what is laid on a particle: it solves for the particle with [that](Self::load), and
-    /// [tells](Self::note_borne) how far it has moved both.
+    /// says when it [takes both up](Self::take_up) and [puts them down](Self::put_down).
     pub fn bear(&mut self, row: usize) {
         if let Some(load) = self.loads.get_mut(row) {
             load.bears = 1;
@@ -100,10 +107,20 @@ impl Bodies<'_> {
         if load > 0.0 && inverse > 0.0 { inverse / (1.0 + inverse * load) } else { inverse }
     }
 
-    /// Tells how far a particle has been moved with what is laid on it \[m\]: whoever has laid it there gives that the impulse.
-    pub fn note_borne(&mut self, row: usize, by: Vec3) {
-        if let Some(load) = self.loads.get_mut(row).filter(|_| by.is_finite()) {
-            load.way += by;
+    /// Says that a particle is about to be moved with what is laid on it.
+    pub fn take_up(&mut self, row: usize) {
+        let now = [self.position[row], self.velocity[row]];
+        if let Some(load) = self.loads.get_mut(row).filter(|load| load.mass > 0.0) {
+            load.by = [load.by[0] - now[0], load.by[1] - now[1]];
+        }
+    }
+
+    /// Says that it has been: whoever has laid that on the particle gives it the impulse.
+    pub fn put_down(&mut self, row: usize) {
+        let now = [self.position[row], self.velocity[row]];
+        if let Some(load) = self.loads.get_mut(row).filter(|load| load.mass > 0.0) {
+            let by = [load.by[0] + now[0], load.by[1] + now[1]];
+            load.by = if by.iter().all(|by| by.is_finite()) { by } else { [Vec3::ZERO; 2] };
         }
     }
 
@@ -112,9 +129,9 @@ impl Bodies<'_> {
         self.loads.get(row).is_some_and(|load| load.caught_up > 0)
     }
 
-    /// How far a particle has been moved with what is laid on it \[m\].
+    /// How far a particle has been moved with what is laid on it \[m\], and how much faster \[m/s\].
     #[must_use]
-    pub fn borne_way(&self, row: usize) -> Vec3 {
-        self.loads.get(row).map_or(Vec3::ZERO, |load| load.way)
+    pub fn borne(&self, row: usize) -> [Vec3; 2] {
+        self.loads.get(row).map_or([Vec3::ZERO; 2], |load| load.by)
     }
 }

@@ -1,6 +1,7 @@
 //! How particles that nothing holds move as a whole, and what rounding takes of that.
 
 use super::inertia::Inertia;
+use super::load::Load;
 use super::turn::Turn;
 use super::{Bodies, SHIFTED};
 use crate::index::{Room, between};
@@ -16,11 +17,12 @@ const COARSE: f32 = 8.0 * f32::EPSILON;
 /// By how many roundings of velocities changes may differ that are alike.
 const ALIKE: f32 = 2.0 * f32::EPSILON;
 
-/// Particles that nothing holds, by their rows: who has none is not there.
+/// Particles that nothing holds, by their rows, with what they bear: who has none is not there.
 #[derive(Clone, Copy)]
 pub(super) struct Group<'a> {
     rows: &'a [u32],
     mass: &'a [f32],
+    loads: &'a [Load],
     place: &'a [Vec3],
     velocity: &'a [Vec3],
     room: Option<&'a Room>,
@@ -39,7 +41,8 @@ pub(super) struct Member {
 impl<'a> Group<'a> {
     /// They as they are.
     pub(super) fn of(bodies: &'a Bodies<'_>, rows: &'a [u32]) -> Self {
-        Self { rows, mass: bodies.mass, place: bodies.position, velocity: bodies.velocity, room: bodies.near.room() }
+        let Bodies { mass, loads, position, velocity, .. } = bodies;
+        Self { rows, mass, loads, place: position, velocity, room: bodies.near.room() }
     }
 
     /// They where they were as the sub-step began, with the velocities that they have.
@@ -52,7 +55,12 @@ impl<'a> Group<'a> {
         self.rows.iter().enumerate().filter_map(move |(number, &row)| {
             let row = row as usize;
             let way = between(self.room, origin, *self.place.get(row)?);
-            Some(Member { number, mass: self.mass[row], way, velocity: self.velocity[row] })
+            Some(Member {
+                number,
+                mass: self.mass[row] + self.loads.get(row).map_or(0.0, Load::mass),
+                way,
+                velocity: self.velocity[row],
+            })
         })
     }
 

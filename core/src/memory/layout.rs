@@ -5,7 +5,7 @@ use crate::math::quotient;
 use glam::Vec3;
 
 /// The words that say what a particle bears.
-pub(crate) const LOAD_WORDS: usize = 10;
+pub(crate) const LOAD_WORDS: usize = 13;
 
 /// So many words of 32 bits for each particle, and so many besides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -50,13 +50,8 @@ impl Solver<'_> {
         for piece in pieces.each() {
             let members = || piece.members.iter().map(|&number| number as usize);
             let is_laden = piece.rows.iter().any(|&row| bodies.load(row as usize) > 0.0);
-            if self.is_free(members()) && is_laden {
-                // What it bears gives it energy, and takes some.
-                roll.budget(&piece).forget();
-                self.keep_momenta(bodies, &piece, true);
-                self.act(bodies, members());
-            } else if self.is_free(members()) {
-                self.keep_momenta(bodies, &piece, false);
+            if self.is_free(members()) {
+                self.keep_momenta(bodies, &piece, is_laden);
                 self.act_freely(bodies, &piece, roll.budget(&piece));
             } else {
                 roll.budget(&piece).forget();

@@ -335,6 +335,9 @@ where
             last,
             left,
         };
+        solver.each_laden(bodies, |bodies, row| {
+            bodies.take_up(row);
+        });
         solver.list_walls();
         solver.meet(bodies);
         solver.linearise(bodies);
@@ -342,7 +345,9 @@ where
         solver.solve(bodies, &mut levels);
         solver.tighten(bodies);
         solver.act_within(bodies, &mut roll, rest);
-        solver.tell_loads(bodies);
+        solver.each_laden(bodies, |bodies, row| {
+            bodies.put_down(row);
+        });
         solver.leave(bodies);
     }
 

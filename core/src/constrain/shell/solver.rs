@@ -149,13 +149,12 @@ impl Solver<'_> {
         }
     }
 
-    /// Says how far it has moved particles that bear something.
-    pub(super) fn tell_loads(&self, bodies: &mut Bodies<'_>) {
-        let Vectors { rows, weight, shift, met, .. } = &self.vectors;
-        for (i, &row) in rows.iter().enumerate().filter(|&(i, &row)| row != NOBODY && weight[i] > 0.0) {
-            if bodies.load(row as usize) > 0.0 {
-                bodies.note_borne(row as usize, shift[i] + met[i]);
-            }
+    /// Does something with all particles that bear something and that it moves.
+    pub(super) fn each_laden(&self, bodies: &mut Bodies<'_>, act: impl Fn(&mut Bodies<'_>, usize)) {
+        let rows = if bodies.loads.is_empty() { &[] } else { &*self.vectors.rows };
+        for (&row, _) in rows.iter().zip(&*self.vectors.weight).filter(|&(&row, &weight)| row != NOBODY && weight > 0.0)
+        {
+            act(bodies, row as usize);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Ties that lay what they join on each other, where a constraint bears it: a shell that is solved for all of its particles at once feels what hangs from them.
 
 use super::super::Bodies;
+use super::super::bodies::Change;
 use super::grip::Grip;
 use super::hold::NEARLY;
 use super::place::weights;
@@ -109,24 +110,29 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
         }
     }
 
-    /// Gives each the impulse that what bears it has moved it by.
+    /// Gives each the impulse that what bears it has moved it by, and made it faster.
     pub(super) fn follow(&self, bodies: &mut Bodies<'_>, place: &[u32], step: &[u32]) -> Option<()> {
-        let &[own, held] = step.first_chunk()?;
+        let (&[own, held], h) = (step.first_chunk()?, bodies.substep.seconds());
         let [own, held] = [own, held].map(f32::from_bits);
         let tied = bodies.row_of_start(self.particle)?;
         self.catch_up(bodies, place, (tied, [own, held]));
-        let mut pull = Vec3::ZERO;
+        let mut pull = [Vec3::ZERO; 2];
         for number in 0..self.to.as_ref().len() {
             let part = self.part(bodies, place, (number, own)).filter(|&(_, part)| part < f32::INFINITY);
-            pull += part.map_or(Vec3::ZERO, |(row, part)| bodies.borne_way(row) * part);
+            let Some((row, part)) = part else { continue };
+            let [way, faster] = bodies.borne(row);
+            pull = [pull[0] + way * part, pull[1] + (faster - way / h) * part];
         }
-        let way = bodies.borne_way(tied);
+        let [way, faster] = bodies.borne(tied);
         if held > 0.0 && held < f32::INFINITY && way != Vec3::ZERO {
-            let grip = self.whole(self.grip(bodies, place, bodies.substep.seconds())?.1);
-            self.push(bodies, place, &grip, way * held, |bodies, row, by| bodies.shift(row, by));
+            let grip = self.whole(self.grip(bodies, place, h)?.1);
+            for (what, by) in [(Change::Place, way), (Change::Velocity, faster - way / h)] {
+                self.push(bodies, place, &grip, by * held, |bodies, row, by| bodies.change(what, row, by));
+            }
         }
-        if pull != Vec3::ZERO {
-            bodies.shift(tied, pull * bodies.inverse_mass[tied]);
+        if pull[0] != Vec3::ZERO {
+            bodies.change(Change::Place, tied, pull[0] * bodies.inverse_mass[tied]);
+            bodies.change(Change::Velocity, tied, pull[1] * bodies.inverse_mass[tied]);
         }
         Some(())
     }
