@@ -3,6 +3,8 @@
 
 #[path = "extend/custom.rs"]
 mod custom;
+#[path = "extend/loads.rs"]
+mod loads;
 #[path = "extend/repeats.rs"]
 mod repeats;
 

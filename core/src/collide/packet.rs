@@ -85,19 +85,25 @@ struct Flight<F> {
 struct Slides<F> {
     are: F,
     pull: Vectors<F>,
+    /// The slack of what they go along.
+    slack: F,
 }
 
 impl<F: Lanes> Slides<F> {
     /// Nobody.
     #[inline(always)]
     fn none(like: F) -> Self {
-        Self { are: like.all(0.0), pull: Vectors::splat(like, Vec3::ZERO) }
+        Self { are: like.all(0.0), pull: Vectors::splat(like, Vec3::ZERO), slack: like.all(0.0) }
     }
 
     /// The first of two where a mask says so, else the second.
     #[inline(always)]
     fn select(mask: F, a: Self, b: Self) -> Self {
-        Self { are: mask.select(a.are, b.are), pull: Vectors::select(mask, a.pull, b.pull) }
+        let [are, slack] = [(a.are, b.are), (a.slack, b.slack)].map(
+            #[inline(always)]
+            |(a, b)| mask.select(a, b),
+        );
+        Self { are, pull: Vectors::select(mask, a.pull, b.pull), slack }
     }
 
     /// What drives all on their paths.
@@ -159,10 +165,10 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         (along, is_steady)
     }
 
-    /// Those that begin on one surface and leave it only to come back to it within the step, the normals toward them, and those of which it
+    /// Those that begin on one surface and leave it only to come back to it within the step, the normals toward them, its slack, and those of which it
     /// cannot be told.
     #[inline(always)]
-    fn seated(&self, paths: &Paths<F>, walls: &impl Walls<F>, acceleration: Vectors<F>) -> (F, Vectors<F>, F) {
+    fn seated(&self, paths: &Paths<F>, walls: &impl Walls<F>, acceleration: Vectors<F>) -> (F, Vectors<F>, [F; 2]) {
         let (time, all) = (paths.time, |x| paths.time.all(x));
         let fall = |acceleration: F| all(0.5) * acceleration * time * time;
         let reach = self.radius + fall(acceleration.length());
@@ -172,7 +178,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let lain = all(LAIN) * slack;
         let is_there = gap.simd_ge(all(0.5) * slack) & gap.simd_le(lain) & fall(pressing).simd_gt(gap);
         let rests = (leaving * time).simd_le(lain) & (all(2.0) * leaving).simd_lt(all(RESTING) * time * pressing);
-        (are & is_there & rests, normal, unclear)
+        (are & is_there & rests, normal, [slack, unclear])
     }
 
     /// How far they slide in a time, and how fast they are then, as `Slide` has it; and whether all are driven steadily meanwhile.
@@ -283,6 +289,9 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
             clear = clear & not(hit & meetings.unclear);
             hit = hit & meetings.hits.are;
         }
+        if walls.face().is_none() && slides.are.any() {
+            clear = clear & not(self.may_be_turned_at_end(&onward, &slides, walls));
+        }
         let settled = clear & not(hit) & onward.end_finite();
         Flight { onward, settled, astray, hits }
     }
@@ -294,6 +303,14 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let deeper = paths.time * hits.time * incoming * max(all(1.0) - max(self.elasticity, all(0.0)), all(LOSS));
         let is_slow = (all(STEEP) * (incoming * incoming)).simd_le(paths.v0.dot(paths.v0));
         deeper.abs().simd_le(all(2.0 * SMOOTH) * hits.slack) & is_slow
+    }
+
+    /// Those that slide to where a surface may turn them, as `turned_at_end` has it.
+    #[inline(always)]
+    fn may_be_turned_at_end(&self, paths: &Paths<F>, slides: &Slides<F>, walls: &impl Walls<F>) -> F {
+        let like = slides.are;
+        let Seats { are, normal, unclear, .. } = walls.seats(paths.x1, self.radius + like.all(LAIN) * slides.slack);
+        like & (unclear | (are & paths.v1.dot(normal).simd_lt(like.all(0.0))))
     }
 
     /// Those that slide into another surface, or have hardly left one, which may be in a crease, as `along_crease` has it.
@@ -313,7 +330,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         dt: f32,
         left: &mut [[i32; LANES]; PARTS],
     ) -> (Paths<F>, Slides<F>, F) {
-        let Meetings { hits: Hits { time: s, normal, .. }, place, .. } = *meetings;
+        let Meetings { hits: Hits { time: s, normal, slack, .. }, place, .. } = *meetings;
         let like = s;
         let (all, zero) = (|x| like.all(x), like.all(0.0));
         // As `Path` has it: numbers of ticks and what is rounded of them are the same in 32 bits.
@@ -357,7 +374,7 @@ impl<F: Lanes, const POINTS: bool> Riders<F, POINTS> {
         let borne = pressed.held(normal);
         let held = if slides.are.any() { Vectors::select(slides.are, risen(held, work), held) } else { held };
         let resting = self.rest(paths, meetings, leads, beside, [held, borne], rest);
-        (Paths::select(rests, resting, flying), Slides { are: rests, pull: borne }, is_free)
+        (Paths::select(rests, resting, flying), Slides { are: rests, pull: borne, slack }, is_free)
     }
 
     /// How those go on with other velocities of which the mean velocities and accelerations so far are known.
@@ -441,7 +458,7 @@ impl<F: Lanes> Riders<F, true> {
         max_bounces: u32,
     ) -> Outcome<F> {
         let acceleration = paths.acceleration();
-        let (lying, normal, unclear) = self.seated(paths, things, acceleration);
+        let (lying, normal, [slack, unclear]) = self.seated(paths, things, acceleration);
         let mut onward = *paths;
         if lying.any() {
             onward = Paths::select(lying, self.along(paths, acceleration, normal).0, onward);
@@ -451,8 +468,14 @@ impl<F: Lanes> Riders<F, true> {
         if step.ticks() > MOST_TICKS {
             return Outcome::of(paths, clear & not(clear), u32::MAX, 0);
         }
-        let flight =
-            self.fly((onward, Slides { are: lying, pull: acceleration }), cubics, things, clear, step, max_bounces);
+        let flight = self.fly(
+            (onward, Slides { are: lying, pull: acceleration, slack }),
+            cubics,
+            things,
+            clear,
+            step,
+            max_bounces,
+        );
         let settled = flight.settled & not(flight.astray & not(mask_of(flight.settled, alone)));
         let which = settled.to_bitmask() & present;
         let hits = flight.hits_of(which) + (lying.to_bitmask() & which).count_ones();

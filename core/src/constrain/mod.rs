@@ -6,6 +6,7 @@
 //! MIG 2016; Macklin et al., "Small Steps in Physics Simulation", SCA 2019).
 
 mod attach;
+mod bearing;
 mod bodies;
 mod budget;
 mod contacts;

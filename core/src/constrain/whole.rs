@@ -57,7 +57,7 @@ impl<'a> Group<'a> {
             let way = between(self.room, origin, *self.place.get(row)?);
             Some(Member {
                 number,
-                mass: self.mass[row] + self.loads.get(row).map_or(0.0, Load::mass),
+                mass: self.mass[row] + self.loads.get(row).map_or(0.0, |load| load.mass),
                 way,
                 velocity: self.velocity[row],
             })

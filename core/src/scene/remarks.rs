@@ -61,8 +61,8 @@ impl SceneFile {
             add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
             add(format_args!("cloths[{i}]"), self.long_for_plate(cloth));
         }
-        for (i, tie) in self.ties.iter().enumerate() {
-            add(format_args!("ties[{i}].to"), self.hung_on_sheet(tie));
+        for (i, cord) in self.ropes.iter().enumerate() {
+            add(format_args!("ropes[{i}].ends"), self.hung_on_sheet(cord));
         }
         // All such ropes are of one kind to whoever reads it.
         if let Some((i, remark)) = self.hung_in_turn() {

@@ -11,6 +11,10 @@ use glam::Vec3;
 const ALIKE: f32 = 1e-4;
 /// The least step that tells more than rounding, as a share of the body's size.
 const LEAST: f32 = 1e-5;
+/// By how much the normals of what is round differ in two places at the least.
+const TURNED: f32 = 1e-5;
+/// By how much steps get shorter at the least.
+const SHORTER: f32 = 0.995;
 /// How often steps are taken for the first of a row that gets shorter alike.
 const ROWS: u32 = 2;
 
@@ -67,14 +71,18 @@ impl Over<'_> {
             let Some(last) = self.next(&next, next.contact.point, size) else { break };
             let [first, second] = [next.contact.point - best.contact.point, last.contact.point - next.contact.point];
             let shorter = length(second) / length(first);
+            // What is flat has one normal everywhere, and along what is straight steps stay as long as they are.
+            let turned = length(next.contact.normal - best.contact.normal);
+            if !(length(first) > least && turned > TURNED && shorter < SHORTER) {
+                break;
+            }
             let ahead = min(shorter / (1.0 - shorter), 2.0 * size / length(second));
-            let is_far = length(first) > least && shorter < 1.0 && ahead.is_finite();
-            let end = if is_far { self.next(&last, last.contact.point + second * ahead, size) } else { None };
-            let before = best.distance;
+            let end = if ahead.is_finite() { last.contact.point + second * ahead } else { last.contact.point };
+            let (before, end) = (best.distance, self.next(&last, end, size));
             for seen in [Some(next), Some(last), end].into_iter().flatten() {
                 best = if seen.distance < best.distance && dot(seen.out, from.out) > 0.0 { seen } else { best };
             }
-            if !is_far || !(best.distance < before) {
+            if !(best.distance < before) {
                 break;
             }
         }

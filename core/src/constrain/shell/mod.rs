@@ -67,6 +67,8 @@ use words::structs;
 /// 400 of them as capped: it is then softer for a while. Of a mesh whose hinges are there twice, or are not edges of two of its triangles, there may be no
 /// room for graphs: it takes dozens of iterations and more, and that is counted in [`Caps`](crate::Caps).
 ///
+/// Whatever is laid on particles ([`Bodies::lay_on`]) counts as mass of theirs while it is solved: what hangs from it by ties.
+///
 /// Where particles meet the scenery in a sub-step, that presses and brakes them while the material is solved (an active set of planes, one a
 /// particle, with Coulomb's cone), so that a hit on a few of them is one on all that hangs on them, and a sheet that falls stretches little
 /// more than its material gives. Edges that turn so far in a sub-step that what is solved along the directions of its beginning leaves them too

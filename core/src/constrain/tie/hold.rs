@@ -5,7 +5,7 @@ use super::super::declared::{Declared, inverse_mass, twice};
 use super::super::{Bodies, Constraint, Demand, Share, Words};
 use super::grip::Grip;
 use super::place::{offset, weights};
-use super::{Tie, laden};
+use super::{NEARLY, Tie, laden};
 use crate::index::between;
 use crate::math::{largest, length, max};
 #[cfg(feature = "alloc")]
@@ -14,9 +14,6 @@ use glam::Vec3;
 
 /// Rounds at the most where there is an offset, whose direction is not linear in the places.
 const ROUNDS: u32 = 6;
-/// How far a rigid tie may be off after all rounds, a share of the size of what it ties: what is left is rounding.
-pub(super) const NEARLY: f32 = 1e-4;
-
 impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
     /// Learns where the place is, if that is not known.
     pub(super) fn know(&self, bodies: &Bodies<'_>, share: &mut Share<'_>) {

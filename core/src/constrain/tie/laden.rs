@@ -3,9 +3,8 @@
 use super::super::Bodies;
 use super::super::bodies::Change;
 use super::grip::Grip;
-use super::hold::NEARLY;
 use super::place::weights;
-use super::{EVEN, Tie};
+use super::{EVEN, NEARLY, Tie};
 use crate::math::{largest, length, max};
 use glam::Vec3;
 

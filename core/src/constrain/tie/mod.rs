@@ -21,8 +21,9 @@ pub use rope::TiedRope;
 /// half the body's radius of gyration, which a body of a single particle has not; farther out, and there, angular momentum fades. A damping β takes from the speed of
 /// that what a force β times the speed does, by an implicit step at the sub-step's end. A rigid tie keeps nothing of that speed.
 ///
-/// One iteration a sub-step, a few more where there is an offset: a tie that joins something light to what is n times as heavy, and is held by other
-/// constraints, is off by about n g h² under its load. List it behind what it ties.
+/// One iteration a sub-step, a few more where there is an offset, and as often as others move apart what one [bears](crate::constrain::Bodies::bear) of the other: a [`Shell`](super::Shell) is solved with what is
+/// tied to it rigidly, and rigid ties of a list are met again after each other. Elsewhere a tie that joins something light to what is n times as heavy, and is held by other constraints, is off by
+/// about n g h² under its load. List it behind what it ties.
 ///
 /// While one of the particles is dead it does nothing, and neither does one with an offset from a triangle without area. In a
 /// [periodic room](crate::index::Periodic) it acts along the shortest way through the sides.
@@ -69,6 +70,8 @@ pub struct Tie<T, W = [f32; 0]> {
 
 /// Words kept before the weights: whose they are, whether they are known, and the offset.
 const HEAD: usize = 3;
+/// How far a rigid tie may be off after all rounds, a share of the size of what it ties: what is left is rounding.
+const NEARLY: f32 = 1e-4;
 /// By how much the sum of weights may be off one.
 const EVEN: f32 = 1e-3;
 
