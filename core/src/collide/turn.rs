@@ -92,7 +92,9 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
         let Some(start) = self.lone(path.x0, slack, path.during[0]) else { return false };
         let [came, comes] = [&start.normal, &normal].map(|normal| dot(velocity, *normal));
         let room = 2.0 * (start.distance - self.radius) + LAIN * slack;
+        // Within rounding of a surface it may seem to begin on its other side.
         leads_into(velocity, normal)
+            && dot(start.normal, normal) > 0.0
             && came >= 0.25 * comes
             && length(way) * (came - comes) * loss <= room * length(velocity)
     }
