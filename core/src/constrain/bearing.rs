@@ -1,4 +1,4 @@
-//! What constraints say and ask of what particles bear: whoever lays something on them, and whoever solves for them with that.
+//! Loads of particles: constraints lay something on them, and others solve for them with that.
 
 use super::Bodies;
 use glam::Vec3;
@@ -47,7 +47,7 @@ impl Bodies<'_> {
         }
     }
 
-    /// How many constraints hold a particle, or the body of which it is the first: each bears its part.
+    /// The number of constraints that hold a particle, or the body of which it is the first: each bears its part.
     #[must_use]
     pub fn holders(&self, row: usize) -> u32 {
         self.loads.get(row).map_or(1, |load| load.holders.max(1))

@@ -93,7 +93,7 @@ pub struct Bodies<'a> {
     pub(crate) bound: &'a mut [u32],
     /// How much faster each will be made as velocities are settled \[m/s\]; empty where nobody puts anything off.
     pub(crate) postponed: &'a mut [Vec3],
-    /// What each bears; empty where nobody lays anything on others.
+    /// The load of each; empty where nobody lays anything on others.
     pub(crate) loads: &'a mut [Load],
     pub(crate) observer: &'a mut dyn Observer,
 }

@@ -1,9 +1,9 @@
-//! What particles bear beside their own mass, so that who solves for many of them at once feels how heavy that is.
+//! The load that a particle bears beside its own mass, so that who solves for many of them at once feels how heavy that is.
 
 use crate::memory::LOAD_WORDS;
 use glam::Vec3;
 
-/// What a particle bears in a sub-step.
+/// The load of a particle in a sub-step.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Load {
@@ -13,10 +13,10 @@ pub(crate) struct Load {
     pub(super) moment: Vec3,
     /// How far the particle has been moved with it \[m\], and how much faster \[m/s\].
     pub(super) by: [Vec3; 2],
-    /// Whether a constraint bears what is laid on the particle, and how many hold the particle, or the body that it is the first of.
+    /// One if a constraint bears what is laid on the particle; and the number of those that hold it, or the body that it is the first of.
     pub(super) bears: u32,
     pub(super) holders: u32,
-    /// Whether the particle has been moved to where its velocity leads.
+    /// One if the particle has been moved to where its velocity leads.
     pub(super) caught_up: u32,
 }
 

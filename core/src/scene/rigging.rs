@@ -73,12 +73,13 @@ impl SceneFile {
         let (point, long) = (cloth.point_mass()?, sheet.sides.map(length).into_iter().fold(0.0, max));
         let boxes = if let Some(Body::Box(number)) = cord.ends[1 - side] { self.boxes_of(number) } else { None };
         let holds = boxes.map_or(cord.fixed.contains(&far), |boxes| boxes.fixed);
+        // Only who asks goes over all of them.
         let ropes =
-            self.ropes.iter().flat_map(|cord| cord.ends).filter(|&end| end == Some(Body::Cloth(number))).count();
+            || self.ropes.iter().flat_map(|cord| cord.ends).filter(|&end| end == Some(Body::Cloth(number))).count();
         let load = if !holds {
             boxes?.mass
         } else if cloth.fixed.is_empty() {
-            point * cloth.count()? as f32 / ropes as f32
+            point * cloth.count()? as f32 / ropes() as f32
         } else {
             return None;
         };

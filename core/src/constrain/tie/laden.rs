@@ -11,7 +11,7 @@ use glam::Vec3;
 /// The words that it keeps through a step: how heavy the particle is for what bears that \[kg\], and how heavy the body is for what bears the particle.
 pub(super) const STEP: usize = 2;
 
-/// How many times as heavy as a body's particle something counts that nothing moves, where it is tied between several.
+/// The weight of something that nothing moves, where it is tied between several of a body's particles, in weights of these.
 const HEAVY: f32 = 1e3;
 
 impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
