@@ -1,9 +1,9 @@
-//! Loaded ropes over pegs, against Atwood's machine and capstan's law: how far the loads go, and what they keep.
+//! Loaded ropes over pegs, against Atwood's machine, capstan's law and Galileo's pendulum: how far the loads go, and what they keep.
 
 use pointmass::force::Friction;
 use pointmass::shape::Capsule;
 use pointmass::{ContactMaterial, Gravity, Measures, Method, Particle, Rope, Scene, Time, Vec3};
-use pointmass_tests::{Random, is_third, started};
+use pointmass_tests::{Random, is_run, started};
 use std::f32::consts::PI;
 
 const G: f32 = 9.81;
@@ -107,30 +107,112 @@ impl Peg {
     }
 }
 
-/// Loads move as capstan's law has it; no energy comes of it, and the rope neither stretches nor gets into the peg.
+/// Loads move as capstan's law has it, whatever the method and the sub-steps, and those that friction holds stay; no energy comes of it, and the rope neither
+/// stretches nor gets into the peg.
 #[test]
 fn loads_over_a_peg_go_as_capstans_law_has_it() {
     let (mut random, mut cases) = (Random::new(8), 0);
-    let mut methods = [Method::Symplectic, Method::Implicit].into_iter().cycle();
-    for (friction, loads) in [(0.0, [1.0, 2.0]), (0.0, [10.0, 20.0]), (0.2, [1.0, 3.0]), (0.1, [10.0, 20.0])] {
-        for substeps in [4, 20, 60] {
-            let down = random.direction();
-            let axis = down.cross(random.direction()).normalize();
-            let peg = Peg { down, axis, friction, loads };
-            let method = methods.next().expect("there is always a next one");
-            if !is_third(&mut cases) {
-                continue;
+    let mut methods = Method::ALL.iter().copied().cycle();
+    let smooth = [(0.0, [1.0, 2.0]), (0.0, [10.0, 20.0])];
+    let rough = [(0.2, [1.0, 3.0]), (0.1, [10.0, 20.0]), (0.1, [100.0, 300.0]), (0.3, [0.1, 1.0]), (0.5, [10.0, 20.0])];
+    for (friction, loads) in smooth.into_iter().chain(rough) {
+        for substeps in [1, 4, 7, 20, 60] {
+            for _ in 0..2 {
+                let down = random.direction();
+                let axis = down.cross(random.direction()).normalize();
+                let peg = Peg { down, axis, friction, loads };
+                let method = methods.next().expect("there is always a next one");
+                if !is_run(&mut cases) {
+                    continue;
+                }
+                let (frames, t) = (24, 0.4f32);
+                let Seen { moved, gained, longer, nearest } = peg.run(method, substeps, frames);
+                let should = 0.5 * peg.acceleration() * t * t;
+                let what = format!("{method}, {substeps} sub-steps, friction {friction}, {loads:?}, {down} {axis}");
+                // Loads of thousands of times the rope's mass slip a little more than they should, and gain some energy.
+                let share = if substeps < 20 || loads[0] > 50.0 { 0.2 } else { 0.04 };
+                for moved in moved {
+                    let room = share * should + if substeps < 20 { 8e-3 } else { 4e-3 };
+                    assert!((moved - should).abs() < room, "{what}: {moved} m, not {should} m");
+                }
+                let most = if method == Method::Euler || loads[0] > 50.0 { 2e-2 } else { 3e-3 };
+                assert!(gained < most * f64::from(G * loads[1] * HANGS), "{what}: {gained} J gained");
+                let most = if substeps == 1 || loads[0] > 50.0 { 3e-3 } else { 1e-3 };
+                assert!(longer < most, "{what}: longer by a share of {longer}");
+                assert!(nearest > RADIUS - 1e-5, "{what}: {nearest} m from the axis");
             }
-            let (frames, t) = (24, 0.4f32);
-            let Seen { moved, gained, longer, nearest } = peg.run(method, substeps, frames);
-            let should = 0.5 * peg.acceleration() * t * t;
-            let what = format!("{method}, {substeps} sub-steps, friction {friction}, {loads:?}");
-            for moved in moved {
-                assert!((moved - should).abs() < 0.06 * should + 4e-3, "{what}: {moved} m, not {should} m");
+        }
+    }
+}
+
+/// A pendulum whose rope a peg catches halfway, and how high its bob rises beyond that \[m\] by turns on either side, in shares of its height at the start.
+fn interrupted(down: Vec3, side: Vec3, bob: f32, method: Method, substeps: u32, frames: u64) -> Vec<f32> {
+    let (long, links, angle, thick) = (1.0f32, 40, 0.7f32, 0.02);
+    let along = down * angle.cos() - side * angle.sin();
+    let point = |i: usize| Particle {
+        position: along * (long * i as f32 / links as f32),
+        mass: if i == links { bob } else { DENSITY * long / links as f32 },
+        elasticity: 0.0,
+        fixed: i == 0,
+        ..Particle::REST
+    };
+    let start: Vec<Particle> = (0..=links).map(point).collect();
+    let rope = Rope::rigid((0..start.len() as u32).collect::<Vec<_>>(), vec![long / links as f32]);
+    let axis = down.cross(side);
+    // It stands just beyond the rope that hangs straight down.
+    let middle = down * (0.5 * long) + side * (thick + 1e-4);
+    let peg = Capsule { from: middle - axis, to: middle + axis, radius: thick };
+    let scene = Scene {
+        start: &start,
+        forces: &Gravity { acceleration: down * G },
+        colliders: &peg,
+        constraints: &rope,
+        substeps,
+        integrator: method.integrator(),
+        ..Scene::EMPTY
+    };
+    let mut system = started(&scene, start.len(), 0);
+    let height = |x: Vec3| (long - x.dot(down)) / (long * (1.0 - angle.cos()));
+    let (mut heights, mut last) = (vec![], 0.0f32);
+    let mut highest = 0.0f32;
+    for frame in 1..=frames {
+        system.step_to(&scene, Time::frame(frame, 60));
+        let x = system.particles().position[links];
+        let on = x.dot(side);
+        if last * on < 0.0 {
+            heights.push(highest);
+            highest = 0.0;
+        }
+        (last, highest) = (on, highest.max(height(x)));
+    }
+    heights
+}
+
+/// The bob of a pendulum rises as high on the side where a peg catches its rope as on the other, as Galileo has it; a light one shares what it has with
+/// its rope.
+#[test]
+fn what_a_peg_interrupts_swings_as_high() {
+    let (mut random, mut cases) = (Random::new(3), 0);
+    for bob in [0.1, 1.0, 10.0] {
+        for substeps in [1, 4, 20] {
+            for &method in Method::ALL.iter().filter(|&&method| method != Method::Euler) {
+                let down = random.direction();
+                let side = down.cross(random.direction()).normalize();
+                if !is_run(&mut cases) {
+                    continue;
+                }
+                let heights = interrupted(down, side, bob, method, substeps, 240);
+                let room = if bob < 1.0 {
+                    0.1
+                } else if substeps < 4 {
+                    0.04
+                } else {
+                    0.02
+                };
+                let what = format!("{bob} kg, {method}, {substeps} sub-steps");
+                assert!(heights.len() > 3, "{what}: {heights:?}");
+                assert!(heights.iter().all(|height| (height - 1.0).abs() < room), "{what}: {heights:?}");
             }
-            assert!(gained < 3e-3 * f64::from(G * loads[1] * HANGS), "{what}: {gained} J gained");
-            assert!(longer < 1e-3, "{what}: longer by a share of {longer}");
-            assert!(nearest > RADIUS - 1e-4, "{what}: {nearest} m from the axis");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! First hits on closed convex solids: shapes say what is inside and where a line runs inside; the rest is here, once.
 
-use super::ball::{Filled, approach, lean, lean_on};
+use super::ball::{Filled, approach, lean};
 use super::{Affine, Collider, Contact, Hit, Segment, earlier};
-use crate::math::{clamp, unit};
+use crate::math::{clamp, is_zero, unit};
 use glam::Vec3;
 
 /// A closed convex solid.
@@ -127,13 +127,24 @@ pub(super) fn ball_first_hit(solid: &impl Hollow, segment: &Segment) -> Option<H
 
 /// Visits the places of a hollow solid that a ball leans on.
 pub(super) fn ball_contacts(solid: &impl Hollow, center: Vec3, reach: f32, visit: &mut dyn FnMut(&Contact)) {
+    let all = [reach, solid.reach()];
     if solid.contains(center) {
-        solid.walls(center, &mut |normal, distance| {
-            lean(center, normal * distance, normal, [reach, solid.reach()], visit);
-        });
-    } else {
-        lean_on(solid, center, [reach, solid.reach()], visit);
+        return solid.walls(center, &mut |normal, distance| lean(center, normal * distance, normal, all, visit));
     }
+    let gap = solid.gap(center);
+    let normal = if is_zero(gap) { outward(solid, center) } else { unit(gap) };
+    lean(center, gap, normal, all, visit);
+}
+
+/// The normal of the face on which a point lies to the last bit, and which no gap shows.
+fn outward(solid: &impl Hollow, point: Vec3) -> Vec3 {
+    let mut nearest = (f32::INFINITY, Vec3::ZERO);
+    solid.walls(point, &mut |normal, distance| {
+        if distance < nearest.0 {
+            nearest = (distance, -normal);
+        }
+    });
+    nearest.1
 }
 
 /// Implements `Collider` for convex solids.

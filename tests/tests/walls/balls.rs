@@ -1,6 +1,8 @@
 //! Balls against every shape, held against distances in double precision.
 
-use pointmass::shape::{Affine, Collider, Cone, Contact, Cuboid, Cylinder, MeshBuf, Placed, Plane, Segment, Triangle};
+use pointmass::shape::{
+    Affine, Collider, Cone, Contact, Cuboid, Cylinder, MeshBuf, Placed, Plane, Segment, Surface, Triangle,
+};
 use pointmass::{Mat3, Time, Vec3};
 use pointmass_tests::surfaces::{Vec, cross, distance, dot, first_touch, forms, minus, near, plus, to_triangle, unit};
 use pointmass_tests::{Form, Random, every, f64s, gap, often};
@@ -140,6 +142,31 @@ fn contacts_are_the_nearest_places_within_reach() {
             }
         }
         assert!(within > often(100) && without > often(100), "{form:?}: {within} {without}");
+    }
+}
+
+/// Who lies on a solid leans on it, whichever side of it rounding has put him on, or neither.
+#[test]
+fn whoever_lies_on_a_solid_leans_on_it() {
+    let mut random = Random::new(64);
+    for form in forms() {
+        let surface = match &form {
+            Form::Box(solid) => solid as &dyn Surface,
+            Form::Sphere(solid) => solid,
+            Form::Cylinder(solid) => solid,
+            Form::Cone(solid) => solid,
+            Form::Capsule(solid) => solid,
+            _ => continue,
+        };
+        for _ in 0..often(20_000) {
+            let at = surface.sample([(); 3].map(|()| random.unit()));
+            let mut nearest = f32::INFINITY;
+            form.contacts(at.point, 1e-3, Time::ZERO, &mut |contact| {
+                assert!((contact.normal.length() - 1.0).abs() < 1e-6, "{form:?} {at:?}: {contact:?}");
+                nearest = nearest.min(contact.distance);
+            });
+            assert!(nearest <= 4e-6 * at.point.abs().max_element().max(1.0), "{form:?} {at:?}: {nearest}");
+        }
     }
 }
 

@@ -46,7 +46,7 @@ pub(super) struct Links<'m> {
     /// Where each particle is \[m\], and how fast it goes \[m/s\].
     pub(super) place: &'m mut [Vec3],
     pub(super) velocity: &'m mut [Vec3],
-    /// Velocities put by \[m/s\].
+    /// Velocities put by \[m/s\]; while links are met by walls, by how much they have made each particle faster, as it would be without these.
     pub(super) aside: &'m mut [Vec3],
     /// The walls of all of the rope's particles, or none.
     pub(super) walls: &'m mut [Wall],
@@ -184,7 +184,7 @@ impl<'m> Links<'m> {
     }
 
     /// How much faster an impulse makes a particle \[m/s\].
-    fn faster(&self, particle: usize, impulse: Vec3) -> Vec3 {
+    pub(super) fn faster(&self, particle: usize, impulse: Vec3) -> Vec3 {
         self.chain.held(particle).map_or(impulse * self.weight[particle], |held| held.inverse * impulse)
     }
 
@@ -198,14 +198,12 @@ impl<'m> Links<'m> {
     pub(super) fn by_walls(&mut self, look: impl Fn(&mut Wall, Pace, Vec3, Vec3) -> Option<Vec3>) -> bool {
         let mut changed = false;
         for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
-            let faster = self.faster(particle, self.sum_at(particle, self.pull));
-            let fast = self.velocity[particle];
+            let (faster, fast) = (self.aside[particle], self.velocity[particle]);
             let (time, left, share, number) = (self.time, self.left, self.share, self.chain.number(particle));
             let Some(wall) = self.walls.get_mut(number).filter(|wall| wall.is_near()) else { continue };
             let from = wall.image(self.room.as_ref(), self.origin + self.place[particle]);
-            let (pace, time) =
-                if time > 0.0 { (Pace::Way { from, time, left, share }, time) } else { (Pace::Settled, 1.0) };
-            let Some(led) = look(wall, pace, faster / time, fast) else { continue };
+            let pace = if time > 0.0 { Pace::Way { from, time, left, share } } else { Pace::Settled };
+            let Some(led) = look(wall, pace, faster, fast) else { continue };
             if self.weight[particle] > 0.0 && led.is_finite() {
                 (self.velocity[particle], changed) = (led, true);
             }

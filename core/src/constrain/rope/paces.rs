@@ -28,35 +28,44 @@ enum Walk {
 impl Links<'_> {
     /// Brings all links of the chain to their lengths.
     pub(super) fn close(&mut self, bodies: &mut Bodies<'_>) {
-        let h = bodies.substep.seconds();
-        self.take_up(bodies, h);
-        if self.meet(h, Way::First) && !self.is_stiff(bodies) {
-            if self.chain.tether {
-                self.let_go(h);
-            }
-            self.note_walls();
-            if self.has_acted() || self.is_by_walls() {
-                self.hand_back(bodies, h);
-            }
-        } else if self.walk_through(bodies) {
-            bodies.report.effort.capped += u64::from(self.is_loaded);
-            self.put_back(bodies);
-        } else {
-            self.jump(bodies);
+        let is_done = self.leap(bodies, Way::First) || self.walk_through(bodies, Way::First);
+        if is_done || self.is_by_walls() && (self.leap(bodies, Way::Middle) || self.walk_through(bodies, Way::Middle)) {
+            return;
         }
+        self.jump(bodies);
     }
 
-    /// Tells whether a particle swings so fast across its links that the sub-step does not show it.
-    fn is_stiff(&self, bodies: &Bodies<'_>) -> bool {
-        self.shown(bodies) * self.stiffness() > STIFF
+    /// Goes through the sub-step in one pace; tells whether that will do.
+    fn leap(&mut self, bodies: &mut Bodies<'_>, along: Way) -> bool {
+        let h = bodies.substep.seconds();
+        self.take_up(bodies, h);
+        if !self.meet(h, along) || along == Way::First && self.is_stiff(self.shown(bodies)) {
+            return false;
+        }
+        if self.chain.tether {
+            self.let_go(h);
+        }
+        self.note_walls();
+        if self.has_acted() || self.is_by_walls() {
+            self.hand_back(bodies, h);
+        }
+        true
+    }
+
+    /// Tells whether a particle swings so fast across its links, which pull in all so many times what they have pulled, that the pace does not show it.
+    pub(super) fn is_stiff(&self, shown: f32) -> bool {
+        shown * self.stiffness() > STIFF
     }
 
     /// Goes through the sub-step in as few paces as will do. Where the most of them will not, who is too light for what pulls at him is made heavier. Tells
     /// whether that has come to an end.
-    fn walk_through(&mut self, bodies: &Bodies<'_>) -> bool {
+    fn walk_through(&mut self, bodies: &mut Bodies<'_>, along: Way) -> bool {
         let (mut paces, mut gone, mut stiff) = (1, 0, self.stiffness());
         while gone < ALL_PACES {
             if paces == PACES {
+                if self.is_by_walls() {
+                    return false;
+                }
                 self.load(0.5 * STIFF);
             }
             // What has not come near tells little: no more than eight times as many.
@@ -66,8 +75,12 @@ impl Links<'_> {
                 paces *= 2;
             }
             paces = paces.min(PACES);
-            match self.walk(bodies, paces) {
-                Walk::Done => return true,
+            match self.walk(bodies, paces, along) {
+                Walk::Done => {
+                    bodies.report.effort.capped += u64::from(self.is_loaded);
+                    self.put_back(bodies);
+                    return true;
+                }
                 Walk::GivenUp { stiff: next, .. } if paces == PACES && !(next > STIFF) => return false,
                 Walk::GivenUp { paces, stiff: next } => (gone, stiff) = (gone + paces, next),
             }
@@ -77,7 +90,7 @@ impl Links<'_> {
 
     /// Goes through the sub-step from where all were as it began, by the forces that the method shows, in so many paces, and keeps to the lengths at each.
     /// Gives up where links turn too far in a pace or do not come near their lengths, and where particles swing too far across them.
-    fn walk(&mut self, bodies: &Bodies<'_>, paces: u32) -> Walk {
+    fn walk(&mut self, bodies: &Bodies<'_>, paces: u32, along: Way) -> Walk {
         let share = 1.0 / paces as f32;
         let (h, time) = (bodies.substep.seconds(), bodies.substep.seconds() * share);
         self.forget_walls();
@@ -86,9 +99,9 @@ impl Links<'_> {
         for pace in 1..=paces {
             self.kick(bodies, share);
             self.left = h - time * pace as f32;
-            let met = self.meet(time, Way::First);
+            let met = self.meet(time, along);
             let stiff = self.stiffness();
-            if !met || stiff > STIFF {
+            if !met || along == Way::First && stiff > STIFF {
                 return Walk::GivenUp { paces: pace, stiff };
             }
             if self.chain.tether {

@@ -1,6 +1,6 @@
 //! The direct solution for what links pull.
 
-use super::links::Links;
+use super::links::{Line, Links};
 use crate::math::{length, max, min, sqrt};
 use glam::Vec3;
 
@@ -10,8 +10,15 @@ const RIDGE: f32 = 1e-6;
 
 /// Rounds of a solution, at the most.
 const ROUNDS: u32 = 8;
-/// Rounds of one that has to go by the directions that links have, or find which walls press and brake, at the most.
+/// Rounds of one that has to go by the directions that links have, at the most.
 const LAST_ROUNDS: u32 = 24;
+/// Rounds of one that has to find which walls press, and how these brake, at the most; those after which what they brake by is taken for known, and those
+/// after which none lets go any more. What presses shows within some rounds, and only then what brakes by that.
+const WALLED_ROUNDS: u32 = 32;
+const BRAKING_ROUNDS: u32 = 16;
+const FREEING_ROUNDS: u32 = 20;
+/// Rounds after which pulls are known well enough to tell how fast a particle swings across its links.
+const TELLING_ROUNDS: u32 = 2;
 /// The cosine of how far a link may turn in a pace: by 30°.
 const COSINE: f32 = 0.866;
 /// How much of what links were off as a solution began may be left before its last round, and of a rounding: what is heavy is thrown about by the least
@@ -24,17 +31,28 @@ const NEARLY: f32 = 1e-4;
 /// The directions along which links act.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Way {
-    /// Those that they have when the pace begins.
+    /// Those that they have when the pace begins: that keeps angular momentum, and the energy of what swings no faster than the pace shows.
     First,
+    /// Halfway between those and the ones at its end: that holds however fast it swings, and takes some of that.
+    Middle,
     /// Those that they have at its end.
     Now,
 }
 
 impl Way {
     fn rounds(self) -> u32 {
+        if self == Self::Now { LAST_ROUNDS } else { ROUNDS }
+    }
+
+    /// The direction of a link along which it acts.
+    fn of(self, line: &Line) -> Vec3 {
         match self {
-            Self::First => ROUNDS,
-            Self::Now => LAST_ROUNDS,
+            Self::First => line.first,
+            Self::Middle => {
+                let middle = line.first + line.normal;
+                middle / length(middle)
+            }
+            Self::Now => line.normal,
         }
     }
 }
@@ -57,8 +75,11 @@ impl Links<'_> {
         let (soft, mut worst, mut begun) = (self.chain.compliance / (time * time), 0.0, 0.0);
         self.pull.fill(0.0);
         let by_walls = self.set_out_by_walls();
-        for round in 0..if by_walls { LAST_ROUNDS } else { along.rounds() } {
+        for round in 0..if by_walls { WALLED_ROUNDS } else { along.rounds() } {
             let changed = by_walls && self.judge_walls(round);
+            if by_walls && along == Way::First && round > TELLING_ROUNDS && self.is_stiff(1.0) {
+                return false;
+            }
             let Some(Round { is_met, lets_go, is_fine, worst: now }) = self.ask_all(soft, along) else { return false };
             worst = now;
             // Rounding of places is nothing to be made good at once.
@@ -78,6 +99,7 @@ impl Links<'_> {
                 return false;
             }
             self.act(time);
+            self.note_faster(time);
             if !lets_go && !by_walls && (is_fine || round > 0 && worst < FINELY * begun) {
                 return true;
             }
@@ -89,14 +111,17 @@ impl Links<'_> {
     fn set_out_by_walls(&mut self) -> bool {
         let any = self.is_by_walls();
         if any {
+            self.aside.fill(Vec3::ZERO);
             self.by_walls(|wall, pace, _, fast| wall.set_out(pace, fast));
         }
         any
     }
 
-    /// Looks before a round which walls press, and in the first ones what friction does; tells whether that is other than in the round before.
+    /// Looks before a round which walls press, and in the first ones which let go and what friction does; tells whether that is other than in the round
+    /// before.
     fn judge_walls(&mut self, round: u32) -> bool {
-        round == 0 || self.by_walls(|wall, pace, faster, _| wall.judge_pace(pace, faster, round < ROUNDS))
+        let may = [round < FREEING_ROUNDS, round < BRAKING_ROUNDS];
+        round == 0 || self.by_walls(|wall, pace, faster, _| wall.judge_pace(pace, faster, may))
     }
 
     /// Asks all links to come to their lengths. None, if one turns too far in the pace.
@@ -111,7 +136,7 @@ impl Links<'_> {
             let rounding = self.rounding(&line);
             let open = line.longer + self.due(line.before - line.rest) + soft * self.pull[link];
             let slack = self.chain.tether && self.pull[link] * (line.weight + soft) >= open;
-            self.way[link] = if along == Way::First { line.first } else { line.normal };
+            self.way[link] = along.of(&line);
             let turn = self.way[link].dot(line.normal);
             if turn < COSINE {
                 if !slack {
@@ -149,7 +174,7 @@ impl Links<'_> {
     pub(super) fn brake(&mut self, soft: f32) {
         let by_walls = self.set_out_by_walls();
         let rounds = if self.chain.tether { ROUNDS } else { 1 };
-        for round in 0..if by_walls { LAST_ROUNDS } else { rounds } {
+        for round in 0..if by_walls { WALLED_ROUNDS } else { rounds } {
             let changed = by_walls && self.judge_walls(round);
             let mut is_met = true;
             self.reach = 0.0;
@@ -169,6 +194,7 @@ impl Links<'_> {
                 break;
             }
             self.act(1.0);
+            self.note_faster(1.0);
         }
         if self.chain.tether {
             self.let_go(1.0);
@@ -219,7 +245,8 @@ impl Links<'_> {
             // (n₁·w₁)(n₀·w₀) − (n₁·w₀)(n₀·w₁) = (n₁ × n₀)·(w₁ × w₀).
             Some(i) => {
                 let bend = normal.cross(pass(self.normal[i])).dot(way.cross(pass(self.way[i])));
-                weight * ((own * left + weight * bend) / pivot)
+                // Who is drawn through the straight line between those beside him would be drawn the wrong way.
+                weight * ((own * left + weight * max(bend, 0.0)) / pivot)
             }
             None => weight * own,
         }
@@ -320,6 +347,13 @@ impl Links<'_> {
         }
     }
 
+    /// Notes by how much the changes of λ, which have acted, would have made particles faster without walls.
+    fn note_faster(&mut self, time: f32) {
+        for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
+            self.aside[particle] += self.faster(particle, self.sum_at(particle, self.change)) * (1.0 / time);
+        }
+    }
+
     /// The impulse that links give a particle in the pace \[kg m/s\].
     pub(super) fn pulled(&self, particle: usize) -> Vec3 {
         self.sum_at(particle, self.pull) * (1.0 / self.time)
@@ -340,12 +374,15 @@ impl Links<'_> {
         self.reach = f32::MAX;
         if pushes {
             self.act(time);
+            self.note_faster(time);
         }
     }
 
-    /// Takes out of velocities what makes links longer or shorter, but for those that are slack.
+    /// Takes out of velocities what makes links longer or shorter, but for those that are slack, and what leads through walls that press.
     pub(super) fn turn_only(&mut self) {
-        let walls = core::mem::take(&mut self.walls);
+        for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
+            self.velocity[particle] = self.pass(particle, self.velocity[particle]);
+        }
         self.pull.fill(0.0);
         (self.reach, self.time) = (0.0, 0.0);
         for link in 0..self.count {
@@ -361,6 +398,5 @@ impl Links<'_> {
             self.act(1.0);
         }
         self.pull.fill(0.0);
-        self.walls = walls;
     }
 }

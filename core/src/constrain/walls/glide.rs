@@ -34,11 +34,16 @@ impl Wall {
     }
 
     /// Looks whether it presses its particle, which others have made faster by so much, and what friction does to that; tells how fast it goes where this
-    /// is other than before. Friction may be taken for known (`rubs`).
-    pub(in crate::constrain) fn judge_pace(&mut self, pace: Pace, faster: Vec3, rubs: bool) -> Option<Vec3> {
+    /// is other than before. It may be that none lets go any more, and that friction is taken for known.
+    pub(in crate::constrain) fn judge_pace(
+        &mut self,
+        pace: Pace,
+        faster: Vec3,
+        [frees, rubs]: [bool; 2],
+    ) -> Option<Vec3> {
         let driven = self.held + faster;
         let load = self.least(pace) - driven.dot(self.normal);
-        if self.presses() && load < self.spare(pace) {
+        if frees && self.presses() && load < self.spare(pace) {
             (self.state, self.brake, self.last) = (NEAR, 0.0, 0.0);
             return Some(driven);
         }
