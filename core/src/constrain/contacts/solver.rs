@@ -187,7 +187,9 @@ impl<'a> Pass<'a> {
             let distance = sqrt(square);
             // The one with the higher row goes up if two are in one place.
             let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
-            (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance)
+            let apart = if distance > 0.0 { d * (1.0 / distance) } else { upward };
+            let normal = self.side(a, b, d).unwrap_or(apart);
+            (normal, if normal == apart { reach - distance } else { reach - d.dot(normal) })
         } else if self.fast && square > 0.0 {
             let (from, to) = self.way(a, b, d);
             let Some(normal) = passed(from, to, reach) else { return };
@@ -428,6 +430,16 @@ impl<'a> Pass<'a> {
         let from = between(self.room, self.x0[b], self.x0[a]);
         let went = |row: usize| self.position[row] - self.x0[row];
         (from, if self.room.is_some() { from + (went(a) - went(b)) } else { d })
+    }
+
+    /// The direction from the second of two to the first when the sub-step began, if their centres have passed each other since.
+    #[inline(always)]
+    fn side(&self, a: usize, b: usize, d: Vec3) -> Option<Vec3> {
+        if !self.fast {
+            return None;
+        }
+        let (from, to) = self.way(a, b, d);
+        (from.dot(to) < 0.0).then(|| unit(from))
     }
 
     /// The way from the second of two to the first.
