@@ -249,9 +249,9 @@ fn falling_into_a_groove_takes_no_way_along_it() {
                 let ([x, v], _) = ends_meeting(meetings, start, &walls, weight, 0.0, method, [h, 1.0]);
                 let [way, fast] = [x - start.position, v].map(|x| x.dot(groove.axes[2]));
                 let case = format!("{half} rad, {method:?} by {h}, {radius} m at {far}, {elasticity}, from {high}");
-                // Methods of first order are off by half a step's fall.
+                // Methods of first order are off by half a step's fall, and of the steps in which it comes to lie some milliseconds may be lost.
                 let room = 0.02 + 1.5 * h as f32;
-                assert!((way - 2.5).abs() < room && (fast - 4.0).abs() < 0.02, "{case}: {way} m, {fast} m/s");
+                assert!((way - 2.5).abs() < room && (fast - 4.0).abs() < 0.03, "{case}: {way} m, {fast} m/s");
             }
         }
     }
