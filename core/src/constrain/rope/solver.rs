@@ -347,9 +347,12 @@ impl Links<'_> {
         }
     }
 
-    /// Notes by how much the changes of λ, which have acted, would have made particles faster without walls.
+    /// Notes by how much the changes of λ, which have acted, would have made particles by walls faster without these.
     fn note_faster(&mut self, time: f32) {
         for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
+            if self.wall(particle).is_none() {
+                continue;
+            }
             self.aside[particle] += self.faster(particle, self.sum_at(particle, self.change)) * (1.0 / time);
         }
     }
