@@ -187,9 +187,10 @@ impl<'a> Pass<'a> {
             let distance = sqrt(square);
             // The one with the higher row goes up if two are in one place.
             let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
-            let apart = if distance > 0.0 { d * (1.0 / distance) } else { upward };
-            let normal = self.side(a, b, d).unwrap_or(apart);
-            (normal, if normal == apart { reach - distance } else { reach - d.dot(normal) })
+            match self.side(a, b, d) {
+                Some(side) => (side, reach - d.dot(side)),
+                None => (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance),
+            }
         } else if self.fast && square > 0.0 {
             let (from, to) = self.way(a, b, d);
             let Some(normal) = passed(from, to, reach) else { return };
