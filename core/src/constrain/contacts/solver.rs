@@ -180,24 +180,9 @@ impl<'a> Pass<'a> {
     fn move_apart(&mut self, pair: &mut Pair) {
         let [a, b] = pair.rows.map(|row| row as usize);
         let (d, reach) = (self.apart(a, b), self.radius[a] + self.radius[b]);
-        let square = d.dot(d);
         pair.touch.end();
         let slack = self.slack(a, reach);
-        let (normal, overlap) = if square < (reach + slack) * (reach + slack) {
-            let distance = sqrt(square);
-            // The one with the higher row goes up if two are in one place.
-            let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
-            match self.side(a, b, d) {
-                Some(side) => (side, reach - d.dot(side)),
-                None => (if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance),
-            }
-        } else if self.fast && square > 0.0 {
-            let (from, to) = self.way(a, b, d);
-            let Some(normal) = passed(from, to, reach) else { return };
-            (normal, reach - to.dot(normal))
-        } else {
-            return;
-        };
+        let Some((normal, overlap)) = self.overlap([a, b], d, [reach, slack]) else { return };
         let closing = max((self.velocity[b] - self.velocity[a]).dot(normal), 0.0);
         // Two that touch by rounding alone do so only to press.
         if !(overlap > 0.0 || overlap > -slack && closing > 0.0) {
@@ -431,6 +416,26 @@ impl<'a> Pass<'a> {
         let from = between(self.room, self.x0[b], self.x0[a]);
         let went = |row: usize| self.position[row] - self.x0[row];
         (from, if self.room.is_some() { from + (went(a) - went(b)) } else { d })
+    }
+
+    /// The direction from the second of two to the first, and by how far they overlap along it, if they touch or have passed each other.
+    #[inline(always)]
+    fn overlap(&self, [a, b]: [usize; 2], d: Vec3, [reach, slack]: [f32; 2]) -> Option<(Vec3, f32)> {
+        let square = d.dot(d);
+        if square < (reach + slack) * (reach + slack) {
+            if let Some(side) = self.side(a, b, d) {
+                return Some((side, reach - d.dot(side)));
+            }
+            let distance = sqrt(square);
+            // The one with the higher row goes up if two are in one place.
+            let upward = if a > b { Vec3::Y } else { Vec3::NEG_Y };
+            return Some((if distance > 0.0 { d * (1.0 / distance) } else { upward }, reach - distance));
+        }
+        if !(self.fast && square > 0.0) {
+            return None;
+        }
+        let (from, to) = self.way(a, b, d);
+        passed(from, to, reach).map(|normal| (normal, reach - to.dot(normal)))
     }
 
     /// The direction from the second of two to the first when the sub-step began, if their centres have passed each other since.
