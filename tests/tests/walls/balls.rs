@@ -145,7 +145,7 @@ fn contacts_are_the_nearest_places_within_reach() {
     }
 }
 
-/// Who lies on a solid leans on it, whichever side of it rounding has put him on, or neither.
+/// A point that lies on a solid leans on it, whichever side of it rounding has put it on, or neither.
 #[test]
 fn whoever_lies_on_a_solid_leans_on_it() {
     let mut random = Random::new(64);
