@@ -53,10 +53,10 @@ use links::Links;
 /// exp(μ φ). Links then move a particle along its wall alone, as if it were so much heavier as friction brakes it; which walls press, and how hard, rounds
 /// of the solution tell, 32 at the most. Where that does not come near the lengths in 256 paces, links act halfway between the directions that they have at the
 /// beginning and at the end (the gradient of a discrete energy: Gonzalez, J. Nonlinear Sci. 6, 1996), which holds however fast particles swing, and takes
-/// from the energy of a swing about half the square of the angle by which links turn in a sub-step. Particles of it of up to some hundred times its mass go
-/// over a peg as that law says within 4 % in 20 sub-steps, and within a fifth in fewer; those that friction holds may slip by some millimetres in the first
-/// half second. Bodies many times its mass that are tied to its ends over a peg stretch it: it does not hold them up. What the scenery is near has no bounds
-/// of energy of its own. It takes 38 words for each particle through a step.
+/// from the energy of a swing about half the square of the angle by which links turn in a sub-step. Loads of it, and bodies tied to
+/// its ends, of up to a thousand times its mass go over a peg as that law says within 4 % in 20 sub-steps, and within a fifth in fewer; those that friction
+/// holds may slip by some millimetres in the first half second. Of lighter ropes friction takes less, until from some hundred thousand times on they run as
+/// if there was none. What the scenery is near has no bounds of energy of its own. It takes 38 words for each particle through a step.
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing, and the parts are solved each by itself. A link whose ends are in one place
 /// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a

@@ -103,10 +103,11 @@ impl Wall {
         if matches!(pace, Pace::Settled) { -max(self.touch.pressed(), 0.0) } else { 0.0 }
     }
 
-    /// Tells whether its particle would get so far into it that it has to press that, or touches it and would go into it.
+    /// Tells whether its particle would get so far into it that it has to press that, or touches it and would go into it. A pace takes it in by its share of what a
+    /// sub-step may: all that a rope holds on a wall would else be driven out at once, as far as a sub-step may take it in, and throw what hangs there.
     fn is_met_in(&self, pace: Pace, load: f32) -> bool {
         match pace {
-            Pace::Way { time, .. } => load * time > NOTICED * self.slack,
+            Pace::Way { time, share, .. } => load * time > NOTICED * self.slack * share,
             Pace::Settled => self.fresh == 1 && load > 0.0,
         }
     }
