@@ -59,7 +59,9 @@ fn clusters_keep_their_angular_momentum_for_a_minute() {
                 let integrator = [Method::Symplectic, Method::Verlet, Method::Rk4][i % 3].integrator();
                 let scene = Scene { start: &start, constraints: &body, substeps, integrator, ..Scene::EMPTY };
                 let [turned, ..] = flown(&scene, often(3600) as u64, &mut |_, _| ());
-                if !(turned < 1e-4) {
+                // A needle that turns about its length has next to no moment of inertia there, of which rounding takes more.
+                let most = if half == sides[2] { 3e-4 } else { 1e-4 };
+                if !(turned < most) {
                     failures.push(format!("{half} {spin} in {substeps}: {turned:.1e}"));
                 }
             }

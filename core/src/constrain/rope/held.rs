@@ -1,5 +1,6 @@
 //! Ends of a rope that are joined to something else, which does not give way alike in all directions.
 
+use crate::math::aside;
 use glam::{Mat3, Vec3};
 
 /// How heavy a place on a body is that an end is joined to, in each direction.
@@ -20,5 +21,21 @@ impl Held {
     /// The inverse mass that it has for an impulse one way, of which another way counts \[1/kg\].
     pub(super) fn weight(&self, [one, other]: [Vec3; 2]) -> f32 {
         one.dot(self.inverse * other) / one.dot(other)
+    }
+
+    /// The same on a face that presses it, which pushes along its normal alone.
+    pub(super) fn on(self, normal: Vec3) -> Self {
+        let way = self.inverse * normal;
+        let [x, y, z] = (way / normal.dot(way)).to_array().map(|share| way * share);
+        Self { inverse: self.inverse - Mat3::from_cols(x, y, z), ..self }
+    }
+
+    /// How much faster it gets along a face that presses it, for each of how much faster off that: it is not as heavy in all directions.
+    pub(super) fn lean(&self, normal: Vec3) -> Vec3 {
+        if self.is_fixed() {
+            return Vec3::ZERO;
+        }
+        let way = self.inverse * normal;
+        aside(way / normal.dot(way), normal)
     }
 }

@@ -2,9 +2,10 @@
 
 use super::super::{Bodies, SHIFTED};
 use super::chain::Chain;
-use crate::constrain::walls::{Pace, Wall};
+use super::held::Held;
+use crate::constrain::walls::{Pace, Pushed, Wall};
 use crate::index::{Room, between};
-use crate::math::{largest, length, max};
+use crate::math::{aside, largest, length, max};
 use crate::memory::take;
 use glam::Vec3;
 
@@ -163,9 +164,32 @@ impl<'m> Links<'m> {
         !self.walls.is_empty() && (0..self.weight.len()).any(|particle| self.wall(particle).is_some())
     }
 
-    /// The part of a direction in which a particle would go that its wall lets pass.
+    /// Tells whether any is near one, and none of these walls moves.
+    pub(super) fn are_by_standing_walls(&self) -> bool {
+        self.is_by_walls() && (0..self.weight.len()).all(|particle| self.wall(particle).is_none_or(Wall::stands))
+    }
+
+    /// The part of a direction in which a particle would go that its wall lets pass. What an end is joined to is told [`on`](Held::on) its wall.
     pub(super) fn pass(&self, particle: usize, along: Vec3) -> Vec3 {
+        if self.chain.held(particle).is_some() {
+            return along;
+        }
         self.wall(particle).map_or(along, |wall| wall.pass(along))
+    }
+
+    /// How fast a particle goes without what leads through its wall.
+    pub(super) fn along_wall(&self, particle: usize, fast: Vec3) -> Vec3 {
+        match (self.chain.held(particle), self.wall(particle).and_then(Wall::pressing)) {
+            (Some(held), Some(normal)) => aside(fast, normal) - held.lean(normal) * fast.dot(normal),
+            _ => self.pass(particle, fast),
+        }
+    }
+
+    /// What an end is joined to, on the wall that presses it.
+    fn held(&self, particle: usize) -> Option<Held> {
+        let held = *self.chain.held(particle)?;
+        let normal = self.wall(particle).and_then(Wall::pressing).filter(|_| !held.is_fixed());
+        Some(normal.map_or(held, |normal| held.on(normal)))
     }
 
     /// By how much a wall brakes a particle along it, as if it were so many times as heavy.
@@ -180,7 +204,7 @@ impl<'m> Links<'m> {
 
     /// The same, with what brakes it along a wall \[1/kg\].
     pub(super) fn weight_at(&self, particle: usize, ways: [Vec3; 2]) -> f32 {
-        self.own_weight(particle, ways) / self.braked(particle)
+        self.held(particle).map_or(self.weight[particle], |held| held.weight(ways)) / self.braked(particle)
     }
 
     /// How much faster an impulse makes a particle \[m/s\].
@@ -190,20 +214,25 @@ impl<'m> Links<'m> {
 
     /// The same, as far as its wall lets it go, and with what brakes it there.
     pub(super) fn faster_by_wall(&self, particle: usize, impulse: Vec3) -> Vec3 {
-        self.pass(particle, self.faster(particle, self.pass(particle, impulse))) / self.braked(particle)
+        let faster = match self.held(particle) {
+            Some(held) => held.inverse * impulse,
+            None => self.pass(particle, self.faster(particle, self.pass(particle, impulse))),
+        };
+        faster / self.braked(particle)
     }
 
     /// Lets the walls of all that are near some look at them in the pace, and at by how much links have made them faster; who is told to goes as fast as
     /// they say. Tells whether anybody is.
-    pub(super) fn by_walls(&mut self, look: impl Fn(&mut Wall, Pace, Vec3, Vec3) -> Option<Vec3>) -> bool {
+    pub(super) fn by_walls(&mut self, look: impl Fn(&mut Wall, Pace, Pushed) -> Option<Vec3>) -> bool {
         let mut changed = false;
         for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
-            let (faster, fast) = (self.aside[particle], self.velocity[particle]);
+            let (faster, fast, held) = (self.aside[particle], self.velocity[particle], self.chain.held(particle));
             let (time, left, share, number) = (self.time, self.left, self.share, self.chain.number(particle));
             let Some(wall) = self.walls.get_mut(number).filter(|wall| wall.is_near()) else { continue };
             let from = wall.image(self.room.as_ref(), self.origin + self.place[particle]);
             let pace = if time > 0.0 { Pace::Way { from, time, left, share } } else { Pace::Settled };
-            let Some(led) = look(wall, pace, faster, fast) else { continue };
+            let lean = held.map(|held| held.lean(wall.normals()[0]));
+            let Some(led) = look(wall, pace, Pushed { fast, faster, lean }) else { continue };
             if self.weight[particle] > 0.0 && led.is_finite() {
                 (self.velocity[particle], changed) = (led, true);
             }
@@ -213,7 +242,7 @@ impl<'m> Links<'m> {
 
     /// Forgets what walls have given in the sub-step, which is gone through again.
     pub(super) fn forget_walls(&mut self) {
-        self.by_walls(|wall, _, _, _| {
+        self.by_walls(|wall, _, _| {
             wall.forget_paces();
             None
         });
@@ -221,8 +250,8 @@ impl<'m> Links<'m> {
 
     /// Counts what walls have given in the pace that has been solved.
     pub(super) fn note_walls(&mut self) {
-        self.by_walls(|wall, pace, faster, _| {
-            wall.note_pace(pace, faster);
+        self.by_walls(|wall, pace, pushed| {
+            wall.note_pace(pace, pushed);
             None
         });
     }

@@ -15,6 +15,7 @@ use super::{Bodies, Constraint, Demand, Share, Words};
 use alloc::boxed::Box;
 use bounded::Bounds;
 use chain::Chain;
+use glam::Vec3;
 pub(super) use held::Held;
 use links::Links;
 
@@ -56,7 +57,8 @@ use links::Links;
 /// from the energy of a swing about half the square of the angle by which links turn in a sub-step. Loads of it, and bodies tied to
 /// its ends, of up to a thousand times its mass go over a peg as that law says within 4 % in 20 sub-steps, and within a fifth in fewer; those that friction
 /// holds may slip by some millimetres in the first half second. Of lighter ropes friction takes less, until from some hundred thousand times on they run as
-/// if there was none. What the scenery is near has no bounds of energy of its own. It takes 38 words for each particle through a step.
+/// if there was none. What the scenery is near has no bounds of energy of its own; where that stands, a sub-step of many paces does not end with a
+/// twentieth more than there was and forces give. It takes 38 words for each particle through a step.
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing, and the parts are solved each by itself. A link whose ends are in one place
 /// has no direction, and does nothing either. No particle may be named twice: a rope does not meet itself. In a
@@ -180,6 +182,20 @@ fn bounds_of<'m>(
     Bounds::of(chain, bodies, kept, words)
 }
 
+/// Settles what walls have pressed, which they do as if all were as heavy in each direction; what an end is joined to is not.
+fn settle_walls(bodies: &mut Bodies<'_>, walls: &mut [Wall], held: &[Option<Held>]) {
+    let ends = [walls.first(), walls.last()].map(|wall| wall.and_then(Wall::row));
+    let before = ends.map(|row| row.map(|row| bodies.velocity[row]));
+    let normals = [walls.first(), walls.last()].map(|wall| wall.map_or(Vec3::ZERO, |wall| wall.normals()[0]));
+    walls::settle(walls, bodies);
+    for (end, held) in held.iter().enumerate().filter_map(|(end, held)| Some((end, held.as_ref()?))) {
+        if let Some((row, before)) = ends[end].zip(before[end]) {
+            let off = (bodies.velocity[row] - before).dot(normals[end]);
+            bodies.velocity[row] += held.lean(normals[end]) * off;
+        }
+    }
+}
+
 impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
     fn demand(&self) -> Demand {
         let (bounds, held) = (bounded::demand(self.particles.as_ref().len()), self.demand_held());
@@ -235,7 +251,7 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
         let walls = if h > 0.0 { walls::of(share.step, self.particles.as_ref().len()) } else { &mut [] };
         let is_by_walls = walls.iter().any(Wall::is_near);
         if is_by_walls {
-            walls::settle(walls, bodies);
+            settle_walls(bodies, walls, held);
         }
         let brake = self.damping * h;
         let soft = if self.compliance > 0.0 { 1.0 / brake } else { 0.0 };

@@ -12,6 +12,8 @@ const PACES: u32 = 256;
 const ALL_PACES: u32 = 4 * PACES;
 /// The cosine of how far one may turn so that its energy is safe: by 15°.
 const GENTLE: f32 = 0.966;
+/// How many times as much energy as is there may be seen in what goes through paces by walls: who swings shows now more of it and now less.
+const LIVELY: f32 = 1.05;
 /// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: half of what is stable for a long chain.
 const STIFF: f32 = 1.0;
 /// How much of what its neighbours are faster is given in a pace to a particle that has been made heavier.
@@ -111,8 +113,10 @@ impl Links<'_> {
             hauled += self.hauled(bodies);
             self.go();
         }
-        if self.turn < GENTLE {
-            self.calm(bodies, self.vigour(bodies, 0.5 * share), before + 2.0 * (self.work(bodies) + hauled));
+        let (now, most) = (self.vigour(bodies, 0.5 * share), before + 2.0 * (self.work(bodies) + hauled));
+        let is_wild = || self.are_by_standing_walls() && now > LIVELY * most + self.fallen(bodies);
+        if self.turn < GENTLE || is_wild() {
+            self.calm(bodies, now, most);
         }
         self.arrive(bodies, paces as f32);
         if self.is_loaded {

@@ -112,7 +112,7 @@ impl Links<'_> {
         let any = self.is_by_walls();
         if any {
             self.aside.fill(Vec3::ZERO);
-            self.by_walls(|wall, pace, _, fast| wall.set_out(pace, fast));
+            self.by_walls(|wall, pace, pushed| wall.set_out(pace, pushed));
         }
         any
     }
@@ -121,7 +121,7 @@ impl Links<'_> {
     /// before.
     fn judge_walls(&mut self, round: u32) -> bool {
         let may = [round < FREEING_ROUNDS, round < BRAKING_ROUNDS];
-        round == 0 || self.by_walls(|wall, pace, faster, _| wall.judge_pace(pace, faster, may))
+        round == 0 || self.by_walls(|wall, pace, pushed| wall.judge_pace(pace, pushed, may))
     }
 
     /// Asks all links to come to their lengths. None, if one turns too far in the pace.
@@ -384,7 +384,7 @@ impl Links<'_> {
     /// Takes out of velocities what makes links longer or shorter, but for those that are slack, and what leads through walls that press.
     pub(super) fn turn_only(&mut self) {
         for particle in 0..if self.walls.is_empty() { 0 } else { self.weight.len() } {
-            self.velocity[particle] = self.pass(particle, self.velocity[particle]);
+            self.velocity[particle] = self.along_wall(particle, self.velocity[particle]);
         }
         self.pull.fill(0.0);
         (self.reach, self.time) = (0.0, 0.0);

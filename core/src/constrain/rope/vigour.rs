@@ -8,16 +8,18 @@ use crate::math::{max, sqrt};
 use glam::{Mat3, Vec3};
 
 impl Links<'_> {
-    /// The velocity that all of it has: that of the first who is fixed, else the mean by mass \[m/s\].
+    /// The velocity that all of it has: that of the first who is fixed, none by walls, else the mean by mass \[m/s\].
     fn drift(&self, bodies: &Bodies<'_>) -> Vec3 {
         self.middle(bodies, |particle, _| self.velocity[particle])
     }
 
-    /// What the first who is fixed has, else the mean by mass.
+    /// What the first who is fixed has, or nothing by walls, else the mean by mass.
     fn middle(&self, bodies: &Bodies<'_>, of: impl Fn(usize, usize) -> Vec3) -> Vec3 {
         let fixed = self.chain.members().find(|&(particle, _)| !(self.weight[particle] > 0.0));
         match fixed {
             Some((particle, row)) => of(particle, row),
+            // Walls take what all of it has.
+            None if self.is_by_walls() => Vec3::ZERO,
             None => self.mean(bodies, of).unwrap_or(Vec3::ZERO),
         }
     }
@@ -70,6 +72,15 @@ impl Links<'_> {
             self.product(bodies, (particle, row), [way(particle, row) - together, gained])
         });
         work.sum::<f32>() / h
+    }
+
+    /// Twice the energy that forces give in a sub-step to what rests \[J\].
+    pub(super) fn fallen(&self, bodies: &Bodies<'_>) -> f32 {
+        let twice = self.chain.members().map(|(particle, row)| {
+            let gained = bodies.velocity[row] - bodies.before[1][row];
+            self.product(bodies, (particle, row), [gained; 2])
+        });
+        twice.sum()
     }
 
     /// The work of those who are fixed on the links that hold them in the pace that has been solved, beside what all of it moves \[J\].

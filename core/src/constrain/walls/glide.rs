@@ -20,17 +20,36 @@ pub(in crate::constrain) enum Pace {
     Settled,
 }
 
+/// How a particle moves as it meets a wall.
+#[derive(Clone, Copy)]
+pub(in crate::constrain) struct Pushed {
+    /// How fast it goes, and by how much others have made it faster \[m/s\].
+    pub(in crate::constrain) fast: Vec3,
+    pub(in crate::constrain) faster: Vec3,
+    /// How much faster along the wall it gets for each of how much faster off it the wall makes it, if it is not as heavy in all directions.
+    pub(in crate::constrain) lean: Option<Vec3>,
+}
+
+impl Pushed {
+    /// How fast it goes along a wall that makes it so much faster off that, if others drive it so fast.
+    fn off(&self, driven: Vec3, load: f32) -> Vec3 {
+        self.lean.map_or(driven, |lean| driven + lean * load)
+    }
+}
+
 impl Wall {
-    /// Begins a pace in which its particle would go so fast by itself; tells how fast it goes if it presses that, as it has before.
-    pub(in crate::constrain) fn set_out(&mut self, pace: Pace, fast: Vec3) -> Option<Vec3> {
+    /// Begins a pace in which its particle goes so fast by itself; tells how fast it goes if it presses that, as it has before.
+    pub(in crate::constrain) fn set_out(&mut self, pace: Pace, pushed: Pushed) -> Option<Vec3> {
         if self.state == NONE {
             return None;
         }
+        let fast = pushed.fast;
         (self.held, self.brake) = (fast, if matches!(pace, Pace::Way { .. }) { self.last } else { 0.0 });
         // Who has got off it is not drawn back to it.
-        let presses = self.presses() && self.least(pace) >= fast.dot(self.normal);
+        let load = self.least(pace) - fast.dot(self.normal);
+        let presses = self.presses() && load >= 0.0;
         self.state = if presses { SLIDES } else { NEAR };
-        presses.then(|| self.led(pace, fast))
+        presses.then(|| self.led(pace, pushed.off(fast, load)))
     }
 
     /// Looks whether it presses its particle, which others have made faster by so much, and what friction does to that; tells how fast it goes where this
@@ -38,34 +57,35 @@ impl Wall {
     pub(in crate::constrain) fn judge_pace(
         &mut self,
         pace: Pace,
-        faster: Vec3,
+        pushed: Pushed,
         [frees, rubs]: [bool; 2],
     ) -> Option<Vec3> {
-        let driven = self.held + faster;
+        let driven = self.held + pushed.faster;
         let load = self.least(pace) - driven.dot(self.normal);
+        let off = pushed.off(driven, load);
         if frees && self.presses() && load < self.spare(pace) {
             (self.state, self.brake, self.last) = (NEAR, 0.0, 0.0);
             return Some(driven);
         }
         let changed = if self.presses() {
-            rubs && self.grip(max(load, 0.0), self.slip(pace, driven))
+            rubs && self.grip(max(load, 0.0), self.slip(pace, off))
         } else {
             self.is_met_in(pace, load)
         };
         if changed {
             self.state = SLIDES;
         }
-        changed.then(|| self.led(pace, driven))
+        changed.then(|| self.led(pace, off))
     }
 
     /// Counts as pressed what it has given its particle in a pace, and as taken what friction has.
-    pub(in crate::constrain) fn note_pace(&mut self, pace: Pace, faster: Vec3) {
+    pub(in crate::constrain) fn note_pace(&mut self, pace: Pace, pushed: Pushed) {
         if self.presses() {
-            let driven = self.held + faster;
+            let driven = self.held + pushed.faster;
             let load = max(self.least(pace) - driven.dot(self.normal), 0.0);
             self.touch.begin(self.touch.pressed() + load);
             self.last = self.brake;
-            self.tangent.give(self.slip(pace, driven) * -self.brake);
+            self.tangent.give(self.slip(pace, pushed.off(driven, load)) * -self.brake);
         }
     }
 

@@ -10,7 +10,7 @@ mod tell;
 
 pub(super) use as_one::{Motion, Whole};
 pub(super) use follow::follow;
-pub(super) use glide::Pace;
+pub(super) use glide::{Pace, Pushed};
 pub(super) use settle::{report, settle};
 pub(super) use solve::{brake, filter, finish, hold, impose, judge, keep, list, meet};
 
@@ -161,6 +161,16 @@ impl Wall {
     /// Tells whether it presses its particle.
     pub(super) fn presses(&self) -> bool {
         self.state > NEAR
+    }
+
+    /// The direction in which it presses its particle, if it does.
+    pub(super) fn pressing(&self) -> Option<Vec3> {
+        self.presses().then_some(self.normal)
+    }
+
+    /// The row of its particle, if there is one near.
+    pub(super) fn row(&self) -> Option<usize> {
+        self.is_near().then_some(self.row as usize)
     }
 
     /// Tells whether there is one that may come to press.
