@@ -1,6 +1,6 @@
 //! Walls of what is solved by speeds, link by link: how particles glide along them.
 
-use super::{NEAR, NONE, NOTICED, SLIDES, Wall};
+use super::{NEAR, NONE, SLIDES, Wall};
 use crate::constrain::contacts::TangentImpulse;
 use crate::index::{Room, between};
 use crate::math::{aside, length, max, min};
@@ -127,7 +127,7 @@ impl Wall {
     /// sub-step may: all that a rope holds on a wall would else be driven out at once, as far as a sub-step may take it in, and throw what hangs there.
     fn is_met_in(&self, pace: Pace, load: f32) -> bool {
         match pace {
-            Pace::Way { time, share, .. } => load * time > NOTICED * self.slack * share,
+            Pace::Way { time, share, .. } => load * time > self.leeway * share,
             Pace::Settled => self.fresh == 1 && load > 0.0,
         }
     }

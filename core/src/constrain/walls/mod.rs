@@ -62,6 +62,8 @@ pub(super) struct Wall {
     velocity: Vec3,
     free: f32,
     slack: f32,
+    /// How far beyond where it is to be a particle that is solved by speeds may get in the sub-step before it presses that \[m\].
+    leeway: f32,
     /// The velocity of its particle before the material answers \[m/s\].
     pushed: Vec3,
     /// How far off all scenery is, at the least \[m\].
@@ -290,6 +292,8 @@ impl Wall {
             let (there, far) = (from + velocity * h, distance - keep - slack);
             let share = if far > 0.0 && missing > 0.0 { far / (far + missing) } else { 0.0 };
             self.take(contact, offset, there + (to - there) * share, bodies);
+            // Who got to the other side of a surface by rounding would be kept there.
+            self.leeway = if gap > 0.0 { min(NOTICED * slack, 0.5 * gap) } else { NOTICED * slack };
         });
         self.free = free;
         (most, nearest)
