@@ -57,7 +57,7 @@ use links::Links;
 /// from the energy of a swing about half the square of the angle by which links turn in a sub-step. Loads of it, and bodies tied to
 /// its ends, of up to a thousand times its mass go over a peg as that law says within 4 % in 20 sub-steps, and within a fifth in fewer; those that friction
 /// holds may slip by some millimetres in the first half second. Of lighter ropes friction takes less, until from some hundred thousand times on they run as
-/// if there was none. What the scenery is near has no bounds of energy of its own; where that stands, a sub-step of many paces does not end with a
+/// if there was none, and rounding may take a point of theirs some millimetres into what it lies on. What the scenery is near has no bounds of energy of its own; where that stands, a sub-step of many paces does not end with a
 /// twentieth more than there was and forces give. It takes 39 words for each particle through a step.
 ///
 /// Whoever is fixed stays. Where a particle has died the chain is broken: both its links do nothing, and the parts are solved each by itself. A link whose ends are in one place

@@ -235,13 +235,14 @@ impl Wall {
     fn look(&mut self, near: f32, bodies: &Bodies<'_>) {
         let (was, searched) = (core::mem::take(&mut self.fresh), self.clear);
         let from = bodies.before[0][self.row as usize];
-        let (mut most, nearest) = self.survey(near, bodies, &|_| true);
+        let last = if was != NONE { self.normal } else { Vec3::ZERO };
+        let (mut most, nearest) = self.survey((near, last), bodies, &|_| true);
         let is_alike = |normal: Vec3| normal.dot(nearest) >= SAME;
         if self.state == NEAR && !(is_alike(self.normal) && self.beside == Vec3::ZERO) {
             // The place of a triangle that is nearest may be on its edge, and edges inside a floor are no faces.
             (self.state, self.clear) = (NONE, searched);
-            (most, _) =
-                self.survey(near, bodies, &|contact| is_alike(contact.normal) || is_face(contact, from, bodies));
+            (most, _) = self
+                .survey((near, last), bodies, &|contact| is_alike(contact.normal) || is_face(contact, from, bodies));
         }
         if self.state == NEAR {
             self.touch.begin(0.0);
@@ -254,7 +255,12 @@ impl Wall {
 
     /// Takes of the faces that count the one that the particle is farthest behind, and another beside it; tells how far it is behind that, and the
     /// normal of the nearest of all.
-    fn survey(&mut self, near: f32, bodies: &Bodies<'_>, counts: &dyn Fn(&Contact) -> bool) -> (f32, Vec3) {
+    fn survey(
+        &mut self,
+        (near, last): (f32, Vec3),
+        bodies: &Bodies<'_>,
+        counts: &dyn Fn(&Contact) -> bool,
+    ) -> (f32, Vec3) {
         let row = self.row as usize;
         let (from, to, h) = (bodies.before[0][row], bodies.position[row], bodies.substep.seconds());
         let (mut most, mut second) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
@@ -262,6 +268,7 @@ impl Wall {
         let mut free = self.clear;
         (self.beside, self.beyond, self.moves) = (Vec3::ZERO, 0.0, 0);
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
+            let contact = &as_before(contact, last);
             let Contact { point, normal, distance, velocity, slack, .. } = *contact;
             // What moves is asked again in every sub-step.
             self.clear = if velocity == Vec3::ZERO { min(distance, self.clear) } else { 0.0 };
@@ -319,6 +326,13 @@ impl Wall {
         self.state = if self.touch.sticks() && holds { STICKS } else { SLIDES };
         self.fresh = 1;
     }
+}
+
+/// A place of a surface as it is seen from where that was seen from in the sub-step before, if rounding has taken a particle through it.
+fn as_before(contact: &Contact, last: Vec3) -> Contact {
+    let through = contact.distance <= NOTICED * contact.slack && contact.normal.dot(last) <= -SAME;
+    let (normal, distance) = (-contact.normal, -contact.distance);
+    if through { Contact { normal, distance, ..*contact } } else { *contact }
 }
 
 /// Tells whether a surface is where a place of it that is nearest says: who goes from the centre straight on through an edge of a flat floor meets
