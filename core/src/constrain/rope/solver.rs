@@ -1,6 +1,7 @@
 //! The direct solution for what links pull.
 
 use super::links::{Line, Links};
+use crate::constrain::walls::Wall;
 use crate::math::{length, max, min, sqrt};
 use glam::Vec3;
 
@@ -112,7 +113,7 @@ impl Links<'_> {
         let any = self.is_by_walls();
         if any {
             self.aside.fill(Vec3::ZERO);
-            self.by_walls(|wall, pace, pushed| wall.set_out(pace, pushed));
+            self.by_walls(Wall::set_out);
         }
         any
     }
