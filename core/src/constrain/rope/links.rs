@@ -2,10 +2,9 @@
 
 use super::super::{Bodies, SHIFTED};
 use super::chain::Chain;
-use super::held::Held;
 use crate::constrain::walls::{Pace, Pushed, Wall};
 use crate::index::{Room, between};
-use crate::math::{aside, largest, length, max};
+use crate::math::{largest, length, max};
 use crate::memory::take;
 use glam::Vec3;
 
@@ -159,6 +158,11 @@ impl<'m> Links<'m> {
         wall.filter(|wall| wall.is_near())
     }
 
+    /// The wall that presses a particle.
+    fn pressing(&self, particle: usize) -> Option<&Wall> {
+        self.wall(particle).filter(|wall| wall.presses())
+    }
+
     /// Tells whether any of its particles is near a wall.
     pub(super) fn is_by_walls(&self) -> bool {
         !self.walls.is_empty() && (0..self.weight.len()).any(|particle| self.wall(particle).is_some())
@@ -169,7 +173,7 @@ impl<'m> Links<'m> {
         self.is_by_walls() && (0..self.weight.len()).all(|particle| self.wall(particle).is_none_or(Wall::stands))
     }
 
-    /// The part of a direction in which a particle would go that its wall lets pass. What an end is joined to is told [`on`](Held::on) its wall.
+    /// The part of a direction in which a particle would go that its wall lets pass. What an end is joined to is told on its wall.
     pub(super) fn pass(&self, particle: usize, along: Vec3) -> Vec3 {
         if self.chain.held(particle).is_some() {
             return along;
@@ -179,22 +183,9 @@ impl<'m> Links<'m> {
 
     /// How fast a particle goes without what leads through its wall.
     pub(super) fn along_wall(&self, particle: usize, fast: Vec3) -> Vec3 {
-        match (self.chain.held(particle), self.wall(particle).and_then(Wall::pressing)) {
-            (Some(held), Some(normal)) => aside(fast, normal) - held.lean(normal) * fast.dot(normal),
-            _ => self.pass(particle, fast),
-        }
-    }
-
-    /// What an end is joined to, on the wall that presses it.
-    fn held(&self, particle: usize) -> Option<Held> {
-        let held = *self.chain.held(particle)?;
-        let normal = self.wall(particle).and_then(Wall::pressing).filter(|_| !held.is_fixed());
-        Some(normal.map_or(held, |normal| held.on(normal)))
-    }
-
-    /// By how much a wall brakes a particle along it, as if it were so many times as heavy.
-    fn braked(&self, particle: usize) -> f32 {
-        self.wall(particle).map_or(1.0, Wall::heavier)
+        let Some(wall) = self.pressing(particle) else { return fast };
+        let (normal, held) = (wall.normals()[0], self.chain.held(particle));
+        held.map_or(wall.pass(fast), |held| wall.pass(fast) - held.lean(normal) * fast.dot(normal))
     }
 
     /// The inverse mass of a particle, with what it is joined to, for an impulse one way, of which another way counts \[1/kg\].
@@ -202,9 +193,12 @@ impl<'m> Links<'m> {
         self.chain.held(particle).map_or(self.weight[particle], |held| held.weight(ways))
     }
 
-    /// The same, with what brakes it along a wall \[1/kg\].
+    /// The same, on the wall that presses it, and with what brakes it along that \[1/kg\].
     pub(super) fn weight_at(&self, particle: usize, ways: [Vec3; 2]) -> f32 {
-        self.held(particle).map_or(self.weight[particle], |held| held.weight(ways)) / self.braked(particle)
+        let Some(wall) = self.pressing(particle) else { return self.own_weight(particle, ways) };
+        let held = self.chain.held(particle).filter(|held| !held.is_fixed());
+        held.map_or_else(|| self.own_weight(particle, ways), |held| held.on(wall.normals()[0]).weight(ways))
+            / wall.heavier()
     }
 
     /// How much faster an impulse makes a particle \[m/s\].
@@ -214,11 +208,12 @@ impl<'m> Links<'m> {
 
     /// The same, as far as its wall lets it go, and with what brakes it there.
     pub(super) fn faster_by_wall(&self, particle: usize, impulse: Vec3) -> Vec3 {
-        let faster = match self.held(particle) {
-            Some(held) => held.inverse * impulse,
-            None => self.pass(particle, self.faster(particle, self.pass(particle, impulse))),
+        let Some(wall) = self.pressing(particle) else { return self.faster(particle, impulse) };
+        let faster = match self.chain.held(particle).filter(|held| !held.is_fixed()) {
+            Some(held) => held.on(wall.normals()[0]).inverse * impulse,
+            None => wall.pass(self.faster(particle, wall.pass(impulse))),
         };
-        faster / self.braked(particle)
+        faster / wall.heavier()
     }
 
     /// Lets the walls of all that are near some look at them in the pace, and at by how much links have made them faster; who is told to goes as fast as

@@ -165,11 +165,6 @@ impl Wall {
         self.state > NEAR
     }
 
-    /// The direction in which it presses its particle, if it does.
-    pub(super) fn pressing(&self) -> Option<Vec3> {
-        self.presses().then_some(self.normal)
-    }
-
     /// The row of its particle, if there is one near.
     pub(super) fn row(&self) -> Option<usize> {
         self.is_near().then_some(self.row as usize)
