@@ -188,7 +188,7 @@ fn loads_over_a_peg_go_as_capstans_law_has_it() {
     }
 }
 
-/// What hangs over a peg from an end that is held falls by the slack that the rope begins with, and stays there: it is not thrown up again, though it is up to
+/// A load that hangs over a peg from an end that is held falls by the slack that the rope begins with, and stays there: it is not thrown up again, though it is up to
 /// some ten thousand times as heavy as the rope.
 #[test]
 fn what_hangs_over_a_peg_from_a_held_end_stays() {

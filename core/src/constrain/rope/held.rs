@@ -30,7 +30,7 @@ impl Held {
         Self { inverse: self.inverse - Mat3::from_cols(x, y, z), ..self }
     }
 
-    /// How much faster it gets along a face that presses it, for each of how much faster off that: it is not as heavy in all directions.
+    /// The speed that it gets along a face that presses it, for each of speed off that: it is not as heavy in all directions.
     pub(super) fn lean(&self, normal: Vec3) -> Vec3 {
         if self.is_fixed() {
             return Vec3::ZERO;

@@ -181,7 +181,7 @@ impl<'m> Links<'m> {
         self.wall(particle).map_or(along, |wall| wall.pass(along))
     }
 
-    /// How fast a particle goes without what leads through its wall.
+    /// The velocity of a particle without what leads through its wall.
     pub(super) fn along_wall(&self, particle: usize, fast: Vec3) -> Vec3 {
         let Some(wall) = self.pressing(particle) else { return fast };
         let (normal, held) = (wall.normals()[0], self.chain.held(particle));

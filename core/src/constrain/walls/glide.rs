@@ -20,18 +20,18 @@ pub(in crate::constrain) enum Pace {
     Settled,
 }
 
-/// How a particle moves as it meets a wall.
+/// The motion of a particle as it meets a wall.
 #[derive(Clone, Copy)]
 pub(in crate::constrain) struct Pushed {
-    /// How fast it goes, and by how much others have made it faster \[m/s\].
+    /// Its velocity, and by how much others have made it faster \[m/s\].
     pub(in crate::constrain) fast: Vec3,
     pub(in crate::constrain) faster: Vec3,
-    /// How much faster along the wall it gets for each of how much faster off it the wall makes it, if it is not as heavy in all directions.
+    /// The speed along the wall that it gets for each of speed off it, if it is not as heavy in all directions.
     pub(in crate::constrain) lean: Option<Vec3>,
 }
 
 impl Pushed {
-    /// How fast it goes along a wall that makes it so much faster off that, if others drive it so fast.
+    /// Its velocity along a wall that makes it so much faster off that, if others drive it so fast.
     fn off(&self, driven: Vec3, load: f32) -> Vec3 {
         self.lean.map_or(driven, |lean| driven + lean * load)
     }

@@ -62,7 +62,7 @@ pub(super) struct Wall {
     velocity: Vec3,
     free: f32,
     slack: f32,
-    /// How far beyond where it is to be a particle that is solved by speeds may get in the sub-step before it presses that \[m\].
+    /// The way beyond where it is to be that a particle which is solved by speeds may go in the sub-step before it presses that \[m\].
     leeway: f32,
     /// The velocity of its particle before the material answers \[m/s\].
     pushed: Vec3,
