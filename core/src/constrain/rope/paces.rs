@@ -12,7 +12,7 @@ const PACES: u32 = 256;
 const ALL_PACES: u32 = 4 * PACES;
 /// The cosine of how far one may turn so that its energy is safe: by 15°.
 const GENTLE: f32 = 0.966;
-/// How many times as much energy as is there may be seen in what goes through paces by walls: who swings shows now more of it and now less.
+/// The energy that may be seen in what goes through paces by walls, a multiple of what is there: a rope that swings shows now more of it and now less.
 const LIVELY: f32 = 1.05;
 /// The square of how far a particle may swing across its links in a pace, in radians of its oscillation: half of what is stable for a long chain.
 const STIFF: f32 = 1.0;

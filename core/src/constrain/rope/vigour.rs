@@ -13,7 +13,7 @@ impl Links<'_> {
         self.middle(bodies, |particle, _| self.velocity[particle])
     }
 
-    /// What the first who is fixed has, or nothing by walls, else the mean by mass.
+    /// The value of the first who is fixed, or none by walls, else the mean by mass.
     fn middle(&self, bodies: &Bodies<'_>, of: impl Fn(usize, usize) -> Vec3) -> Vec3 {
         let fixed = self.chain.members().find(|&(particle, _)| !(self.weight[particle] > 0.0));
         match fixed {
