@@ -60,6 +60,7 @@ mod rolling;
 mod rooms;
 mod rope_energy;
 mod ropes;
+mod round_scenery;
 mod rounding;
 mod sampling;
 mod scripted;

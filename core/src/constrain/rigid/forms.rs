@@ -85,6 +85,43 @@ impl Form<'_> {
         }
     }
 
+    /// The normal of the face that looks most in a direction, in the body's frame.
+    pub(super) fn facing(&self, toward: Vec3) -> Vec3 {
+        match self {
+            Self::Box => {
+                let (x, y, z) = (toward.x.abs(), toward.y.abs(), toward.z.abs());
+                let axis = if x >= y && x >= z {
+                    Vec3::X
+                } else if y >= z {
+                    Vec3::Y
+                } else {
+                    Vec3::Z
+                };
+                axis * axis.dot(toward).signum()
+            }
+            Self::Hull(hull) | Self::Piece(hull) => {
+                let mut best = (toward, f32::NEG_INFINITY);
+                for face in hull.faces {
+                    let along = dot(face.normal, toward);
+                    if along > best.1 {
+                        best = (face.normal, along);
+                    }
+                }
+                best.0
+            }
+            Self::Ball => toward,
+        }
+    }
+
+    /// The corner of it that is farthest in a direction, in the body's frame \[m\].
+    pub(super) fn farthest(&self, body: &Body, toward: Vec3) -> Vec3 {
+        match self {
+            Self::Box => body.half.copysign(toward),
+            Self::Hull(hull) | Self::Piece(hull) => hull.farthest(toward) + hull.center,
+            Self::Ball => toward * body.radius,
+        }
+    }
+
     /// Where its middle is \[m\].
     pub(super) fn middle(&self, body: &Body) -> Vec3 {
         match self {

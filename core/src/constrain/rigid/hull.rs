@@ -192,6 +192,18 @@ impl<'a> Hull<'a> {
         eight(self.spread())
     }
 
+    /// The corner that is farthest in a direction.
+    pub(super) fn farthest(&self, toward: Vec3) -> Vec3 {
+        let mut best = (Vec3::ZERO, f32::NEG_INFINITY);
+        for &corner in self.corners {
+            let far = dot(corner, toward);
+            if far > best.1 {
+                best = (corner, far);
+            }
+        }
+        best.0
+    }
+
     /// The place on its surface that is nearest to a place \[m\], the way out there, and how far out the place is \[m\]: below zero inside.
     pub(super) fn nearest(&self, place: Vec3) -> (Vec3, Vec3, f32) {
         let mut best = (place, Vec3::Y, f32::NEG_INFINITY);

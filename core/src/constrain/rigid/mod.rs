@@ -7,12 +7,12 @@ mod body;
 mod bound;
 mod boxes;
 #[cfg(feature = "alloc")]
+mod closest;
 mod compound;
 #[cfg(feature = "alloc")]
 mod cut;
 mod facets;
 mod fly;
-mod foremost;
 mod forms;
 mod fours;
 mod hull;

@@ -2,8 +2,8 @@
 
 use super::super::Bodies;
 use super::body::Body;
+use super::closest::{Near, Over};
 use super::facets::{Spot, Spots, four, push};
-use super::foremost::{Over, Seen};
 use super::forms::{Form, Forms};
 use super::manifold::{DIRECTIONS, Manifold, POINTS, Point};
 use super::skin;
@@ -134,6 +134,9 @@ impl Visit<'_> {
         let path = Segment { from: middle, to: point, radius: 0.0, during: [at, at] };
         if let Some(hit) = colliders.first_hit(&path) {
             let met = path.at(hit.time);
+            if self.is_past(bodies, &path, met) {
+                return;
+            }
             let floor = Contact {
                 point: met,
                 normal: hit.normal,
@@ -158,6 +161,14 @@ impl Visit<'_> {
         if count > 1 {
             self.beside(bodies, (place, point + floor.normal * (0.5 * self.reach)), &floor);
         }
+    }
+
+    /// Tells whether a corner that is deep beyond a place, as seen from the middle, has come out of the scenery again on the other side: what is thin lies across
+    /// edges or faces there.
+    fn is_past(&self, bodies: &Bodies<'_>, path: &Segment, met: Vec3) -> bool {
+        let back = Segment { from: path.to, to: path.from, ..*path };
+        length(path.to - met) > self.reach
+            && bodies.colliders.first_hit(&back).is_some_and(|hit| length(back.at(hit.time) - met) > self.level())
     }
 
     /// Looks for other faces around a corner that a floor is next to, from somewhat above that: what rises no higher than it is a seam or an edge of the
@@ -200,26 +211,60 @@ impl Visit<'_> {
         });
         bodies.report.caps.contacts += left_out;
         for &contact in &near {
-            let seen = Seen::of(&self.form, body, contact);
-            // What is round may come up to the body elsewhere.
-            let rises = length(half) * seen.leans(body);
-            if seen.distance > self.reach + rises || self.support(&contact, seen.normal(body)).is_none() {
-                continue;
-            }
             let over = Over { form: &self.form, body, colliders: bodies.colliders, at };
-            let (Seen { contact, on, out, distance }, is_round) = over.foremost(seen);
-            if distance > self.reach || !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) {
+            if self.is_stood_on(&contact) {
                 continue;
             }
-            let normal = body.rotation * -out;
-            if dot(normal, contact.normal) > 0.0
-                && let Some(normal) = self.support(&contact, normal)
-            {
+            let Some(Near { contact, on, depth, is_round }) = over.closest(contact, self.reach) else { continue };
+            let normal = if is_round { self.face(on, contact.normal) } else { contact.normal };
+            let out = body.rotation.transpose() * -normal;
+            if !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) {
+                continue;
+            }
+            let normal =
+                if is_round { self.beside_known(&contact, on, normal) } else { self.support(&contact, normal) };
+            if let Some(normal) = normal {
                 self.is_on_round |= is_round;
                 self.put(bodies, &Contact { normal, ..contact }, on);
-                self.rims(bodies, normal, [on, out]);
+                let facing = self.form.facing(out);
+                if dot(facing, out) > ALIKE {
+                    self.rims(bodies, body.rotation * -facing, [on, facing], depth);
+                }
             }
         }
+    }
+
+    /// Tells whether corners do all that a flat face of the scenery would.
+    fn is_stood_on(&self, contact: &Contact) -> bool {
+        let mut slots = self.slots.iter().filter(|slot| slot.count as usize == POINTS);
+        slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE)
+    }
+
+    /// The normal of the body's surface at a place on it where the scenery's is so, as that presses on it: exactly that of a face, or across an edge.
+    fn face(&self, on: Vec3, normal: Vec3) -> Vec3 {
+        let out = self.body.rotation.transpose() * -normal;
+        let (_, out, _) = self.form.nearest(self.body, on + out * (0.1 * self.body.small()));
+        self.body.rotation * -out
+    }
+
+    /// The normal along which what is not flat presses on a place of the body; none, if that is a corner which meets it alike, or it is the edge of what corners stand
+    /// on.
+    fn beside_known(&self, contact: &Contact, on: Vec3, normal: Vec3) -> Option<Vec3> {
+        let slots = self.slots.iter().filter(|slot| slot.count > 0);
+        let mut alike = slots.clone().filter(|slot| dot(slot.normal, normal) > ALIKE).peekable();
+        let is_known = if alike.peek().is_some() {
+            alike.flat_map(Manifold::points).any(|point| length(point.places[1] - on) <= self.level())
+        } else {
+            slots.clone().any(|slot| self.is_level(slot, contact))
+        };
+        (!is_known).then_some(normal)
+    }
+
+    /// Tells whether a place of the scenery is level with a face on which the body stands, and hangs over nowhere: such an edge is a seam.
+    fn is_level(&self, slot: &Manifold, contact: &Contact) -> bool {
+        let (ground, normal) = (slot.points[0].places[0], slot.normal);
+        let lowest = self.body.point(self.form.farthest(self.body, -(self.body.rotation.transpose() * normal)));
+        dot(normal, contact.point - ground).abs() <= self.level() && dot(normal, lowest - ground) >= -self.level()
     }
 
     /// The normal along which a place of the scenery presses on a face of the body; none, if corners do all that it would.
@@ -230,16 +275,14 @@ impl Visit<'_> {
             return ((slot.count as usize) < POINTS).then_some(slot.normal);
         }
         // Corners stand on that very face, or on one that ends there.
-        let is_level =
-            |slot: &Manifold| dot(slot.normal, contact.point - slot.points[0].places[0]).abs() <= self.level();
-        let is_met = slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE || is_level(slot));
+        let is_met = slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE || self.is_level(slot, contact));
         (!is_met).then_some(normal)
     }
 
     /// Looks for further places of the scenery on a face of the body, with a place in it and its normal: those nearest to the body's corners. What hangs over
     /// an edge lies on that from one end to the other.
-    fn rims(&mut self, bodies: &mut Bodies<'_>, normal: Vec3, [inside, out]: [Vec3; 2]) {
-        let (body, at) = (self.body, bodies.substep.during[0]);
+    fn rims(&mut self, bodies: &mut Bodies<'_>, normal: Vec3, [inside, out]: [Vec3; 2], depth: f32) {
+        let (body, at, reach) = (self.body, bodies.substep.during[0], self.reach + 2.0 * depth);
         let far = 2.0 * length(self.form.half(body));
         for corner in 0..self.form.corners() {
             let corner = self.form.corner(body, corner);
@@ -249,13 +292,13 @@ impl Visit<'_> {
                 continue;
             }
             // From within the body walls beside it are met higher up.
-            let from = body.point(corner - out * (2.0 * self.reach));
+            let from = body.point(corner - out * (2.0 * reach));
             let (mut rims, mut left_out) = (heapless::Vec::<(Contact, Vec3), 8>::new(), 0);
             bodies.colliders.contacts(from, far, at, &mut |contact| {
                 let place = body.place(contact.point);
                 let above = dot(place - inside, out);
                 let on = place - out * above;
-                if above.abs() <= self.reach && self.form.nearest(body, on).2 <= self.level() {
+                if above <= self.reach && -above <= reach && self.form.nearest(body, on).2 <= self.level() {
                     left_out += u64::from(rims.push((Contact { normal, ..*contact }, on)).is_err());
                 }
             });
