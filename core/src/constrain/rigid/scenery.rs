@@ -34,7 +34,7 @@ struct Visit<'a> {
 /// Looks where a body touches the scenery, or will within two sub-steps, if it has gone far enough since the last time, or the scenery may have.
 ///
 /// Its corners are asked for, as points: one that is beyond a surface, as seen from the body's middle, is met where the way there crosses it.
-/// Then the places of the scenery nearest to the body's middle, where they lie in it: edges and spheres smaller than it. A ball has no corners. Of
+/// Then for each part of the scenery that is near the place where an edge or a face is nearest to it ([`Over::closest`]). A ball has no corners. Of
 /// several pieces each is looked at so by itself.
 pub(super) fn meet(
     bodies: &mut Bodies<'_>,
@@ -200,7 +200,7 @@ impl Visit<'_> {
         }
     }
 
-    /// Looks for places of the scenery in the body.
+    /// Looks for the places of the scenery that come nearest to the body's edges and faces.
     fn scenery(&mut self, bodies: &mut Bodies<'_>) {
         let (body, at) = (self.body, bodies.substep.during[0]);
         let (middle, half) = (self.form.middle(body), self.form.half(body));
@@ -237,7 +237,7 @@ impl Visit<'_> {
     /// Tells whether corners do all that a flat face of the scenery would.
     fn is_stood_on(&self, contact: &Contact) -> bool {
         let mut slots = self.slots.iter().filter(|slot| slot.count as usize == POINTS);
-        slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE)
+        slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE && self.is_level(slot, contact))
     }
 
     /// The normal of the body's surface at a place on it where the scenery's is so, as that presses on it: exactly that of a face, or across an edge.
@@ -318,7 +318,8 @@ impl Visit<'_> {
         let on = over - normal * gap;
         let Some(number) = self.slot(bodies, contact).or_else(|| self.give_way(bodies, contact, gap)) else { return };
         let Some(slot) = self.slots.get_mut(number) else { return };
-        if slot.points().iter().any(|other| other.places[1] == place) {
+        let level = 0.25 * self.body.small();
+        if slot.points().iter().any(|other| length(other.places[1] - place) <= level) {
             return;
         }
         let near = |slot: &&Manifold| slot.count > 0 && dot(slot.normal, normal) > ALIKE;

@@ -1,0 +1,146 @@
+//! Rigid bodies that fall on solids of all sizes in any pose: they meet them by their corners, by edges that cross and by faces.
+
+use pointmass::constrain::{HullBuf, RigidBodies, RigidBox};
+use pointmass::force::Friction;
+use pointmass::shape::{Capsule, Collider, Cuboid, Sphere};
+use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Time, Vec3};
+use pointmass_tests::{Random, started};
+
+/// A box that stands anywhere.
+struct Posed {
+    half: Vec3,
+    middle: Vec3,
+    axes: [Vec3; 3],
+}
+
+impl Posed {
+    /// That of eight particles that lie as those of a solid box do.
+    fn of(half: Vec3, places: &[Vec3]) -> Self {
+        let axis = |bit: usize| {
+            let along = |(i, place): (usize, &Vec3)| if i >> bit & 1 == 1 { *place } else { -*place };
+            places.iter().enumerate().map(along).sum::<Vec3>().normalize()
+        };
+        Self { half, middle: places.iter().sum::<Vec3>() / 8.0, axes: [0, 1, 2].map(axis) }
+    }
+
+    /// How far it is from a place \[m\]; below zero inside.
+    fn gap(&self, place: Vec3) -> f32 {
+        let away = place - self.middle;
+        let out = Vec3::from_array([0, 1, 2].map(|k| away.dot(self.axes[k]).abs())) - self.half;
+        out.max(Vec3::ZERO).length() + out.max_element().min(0.0)
+    }
+
+    /// How far it is from a segment \[m\], which is convex along that.
+    fn gap_to(&self, [from, to]: [Vec3; 2]) -> f32 {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let [a, b] = [(2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0];
+            let [one, other] = [a, b].map(|t| self.gap(from.lerp(to, t)));
+            (low, high) = if one < other { (low, b) } else { (a, high) };
+        }
+        self.gap(from.lerp(to, low))
+    }
+
+    /// How far it is from another along the axis that separates them most \[m\]; below zero, how deep in it.
+    fn apart(&self, other: &Self) -> f32 {
+        let across = self.axes.into_iter().flat_map(|a| other.axes.map(|b| a.cross(b).normalize_or_zero()));
+        let axes = self.axes.into_iter().chain(other.axes).chain(across).filter(|axis| *axis != Vec3::ZERO);
+        let reach = |of: &Self, axis: Vec3| (0..3).map(|k| of.axes[k].dot(axis).abs() * of.half[k]).sum::<f32>();
+        let way = other.middle - self.middle;
+        axes.map(|axis| way.dot(axis).abs() - reach(self, axis) - reach(other, axis)).fold(f32::MIN, f32::max)
+    }
+}
+
+/// A solid of the scenery.
+enum Solid {
+    Ball(Sphere),
+    Rod(Capsule),
+    Block(Cuboid),
+}
+
+impl Solid {
+    /// One in the middle, or farther off, of some size beside bodies of about `scale` \[m\].
+    fn any(random: &mut Random, kind: usize, (at, scale): (Vec3, f32)) -> Self {
+        let radius = random.magnitude(0.03, 1.0) * scale;
+        let along = random.direction() * (2.0 * scale);
+        let half = Vec3::from_array([0, 1, 2].map(|_| random.magnitude(0.03, 1.0))) * scale;
+        match kind {
+            0 => Self::Ball(Sphere { center: at, radius }),
+            1 => Self::Rod(Capsule { from: at - along, to: at + along, radius }),
+            _ => Self::Block(Cuboid { min: at - half, max: at + half }),
+        }
+    }
+
+    fn collider(&self) -> &dyn Collider {
+        match self {
+            Self::Ball(sphere) => sphere,
+            Self::Rod(capsule) => capsule,
+            Self::Block(cuboid) => cuboid,
+        }
+    }
+
+    /// How far a box is from it \[m\]; below zero, how deep in it.
+    fn gap(&self, posed: &Posed) -> f32 {
+        match self {
+            Self::Ball(Sphere { center, radius }) => posed.gap(*center) - radius,
+            Self::Rod(Capsule { from, to, radius }) => posed.gap_to([*from, *to]) - radius,
+            Self::Block(Cuboid { min, max }) => {
+                let (half, middle) = ((*max - *min) * 0.5, (*max + *min) * 0.5);
+                posed.apart(&Posed { half, middle, axes: Vec3::AXES })
+            }
+        }
+    }
+}
+
+/// Whatever way it falls on a ball, a rod or a block, and however thin that is, a body is stopped at its surface.
+#[test]
+fn bodies_are_stopped_by_solids() {
+    let mut random = Random::new(61);
+    for case in 0..if cfg!(debug_assertions) { 240 } else { 6000 } {
+        let scale = [0.01, 1.0, 30.0][case % 3];
+        let at = Vec3::ONE * if case % 4 == 3 { 20.0 * scale } else { 0.0 };
+        let solid = Solid::any(&mut random, case / 2 % 3, (at, scale));
+        let half = Vec3::from_array([0, 1, 2].map(|_| random.magnitude(0.15, 0.5))) * scale;
+        let corner =
+            |i: usize| half * Vec3::from_array([0, 1, 2].map(|bit| if i >> bit & 1 == 1 { 1.0 } else { -1.0 }));
+        let hulls = [HullBuf::of(&(0..8).map(corner).collect::<Vec<_>>()).expect("a hull")];
+        let (axis, angle) = (random.direction(), random.between(0.0, 1.5));
+        let turn = (axis * angle.sin()).extend(angle.cos()).to_array();
+        // As high above it as it takes to be without.
+        let mut place = at + random.vector(0.3) * Vec3::new(1.0, 0.0, 1.0) * scale;
+        let body = loop {
+            let upright = RigidBox::new(half, place, 0);
+            let body = RigidBox { turn, hull: (case % 2 == 1).then_some(0), ..upright };
+            let places = body.solid(Particle::REST).map(|particle| particle.position);
+            if solid.gap(&Posed::of(half, &places)) > 0.05 * scale {
+                break body;
+            }
+            place.y += 0.1 * scale;
+        };
+        let velocity = Vec3::NEG_Y * (random.between(0.0, 4.0) * scale);
+        let start = body.solid(Particle { velocity, material: Some(0), ..Particle::REST });
+        let mu = random.between(0.0, 1.0);
+        let substeps = [10, 20, 40][case / 6 % 3];
+        let method = Method::ALL[case % Method::ALL.len()];
+        let scene = Scene {
+            start: &start,
+            forces: &Gravity { acceleration: Vec3::NEG_Y * (9.81 * scale) },
+            colliders: solid.collider(),
+            materials: &[ContactMaterial { elasticity: None, friction: Some(Friction { static_: mu, kinetic: mu }) }],
+            constraints: &RigidBodies { boxes: [body], hulls: &hulls[..], balls: 0 },
+            integrator: &method,
+            substeps,
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, start.len(), 1);
+        for frame in 1..=60 {
+            system.step_to(&scene, Time::frame(frame, 60));
+            let particles = system.particles();
+            let gap = solid.gap(&Posed::of(half, particles.position));
+            let fast = particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
+            // By a 60th of its longest side, and by a part of the way that it goes in a sub-step.
+            let most = 0.03 * half.max_element() + 0.3 * fast / (60.0 * substeps as f32);
+            assert!(-gap < most, "{case} after {frame}: {gap} of {half}, {substeps} {method:?}, {most}");
+        }
+    }
+}
