@@ -138,7 +138,7 @@ fn bodies_are_stopped_by_solids() {
             let particles = system.particles();
             let gap = solid.gap(&Posed::of(half, particles.position));
             let fast = particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
-            // By a 60th of its longest side, and by a part of the way that it goes in a sub-step.
+            // By a seventieth of its longest side, and by a part of the way that it goes in a sub-step.
             let most = 0.03 * half.max_element() + 0.3 * fast / (60.0 * substeps as f32);
             assert!(-gap < most, "{case} after {frame}: {gap} of {half}, {substeps} {method:?}, {most}");
         }

@@ -2,18 +2,21 @@
 
 use super::body::Body;
 use super::forms::Form;
-use crate::math::{dot, length, max, min};
+use crate::math::{dot, largest, length, max, min};
 use crate::shape::{Collider, Contact};
 use crate::time::Time;
 use glam::Vec3;
 
-/// How often the scenery is asked in a round where it is nearest to a place of the body, at the most, and rounds.
+/// How often the scenery is asked in a round where it is nearest to a place of the body, at the most, behind the first time.
 const ASKED: u32 = 16;
+/// Rounds at the most.
 const ROUNDS: u32 = 4;
 /// The share of the way to the tangent plane of the scenery that a step leaves.
 const LEFT: f32 = 0.1;
 /// How much nearer the two may be than the place that has been found, as a share of a length that is small beside the body.
 const NEARLY: f32 = 0.05;
+/// The cosine of an angle by which the normal turns where a surface is seen from its other side.
+const ROUND: f32 = -0.9;
 /// By how much the normals of what is round differ in two places at the least.
 const TURNED: f32 = 1e-5;
 
@@ -24,8 +27,8 @@ pub(super) struct Near {
     pub(super) on: Vec3,
     /// How deep the body has gone into it \[m\], or zero.
     pub(super) depth: f32,
-    /// True if the scenery is not flat there.
-    pub(super) is_round: bool,
+    /// True if the normal is another there than where the scenery is nearest to the body's middle: what is flat is the same everywhere.
+    pub(super) turned: bool,
 }
 
 /// A piece of a body among the scenery.
@@ -44,12 +47,12 @@ struct Spot {
 }
 
 impl Over<'_> {
-    /// The place where a part of the scenery is nearest to the body, or the body deepest in it, from the place that is nearest to the body's middle; none if it is
-    /// farther off than `reach` \[m\].
+    /// The place where a part of the scenery, if that is convex, is nearest to the body, or the body deepest in it, from the place that is nearest to the body's
+    /// middle; none if it is farther off than `reach` \[m\].
     ///
-    /// The farther of all directions is sought in which they are apart. Surfaces are seen from both sides, so what the body has gone into is asked where the body is put
-    /// aside, as far along the best direction yet as the two overlap in that: beyond the tangent plane it is without. Where it is then nearest tells a better direction, until
-    /// none is. One round tells how far apart they are that do not overlap.
+    /// It is where the two are farthest apart of all directions. Surfaces are seen from both sides, so the scenery is asked as if the body were put aside, as
+    /// far along the best direction yet as the two overlap in that: there it is all beyond a tangent plane of the scenery. The place where it is nearest then
+    /// tells a better direction, until none is.
     pub(super) fn closest(&self, from: Contact, reach: f32) -> Option<Near> {
         let small = self.form.small(self.body);
         let (mut spot, mut gap) = (Spot { place: from.point, contact: from }, self.gap(&from));
@@ -59,7 +62,7 @@ impl Over<'_> {
         let least = NEARLY * small;
         for round in 0..ROUNDS {
             let aside = spot.contact.normal * max(small - gap, 0.0);
-            let Some(begin) = self.ask(self.project(spot.contact.point - aside), aside, spot.contact.point) else {
+            let Some(begin) = self.ask(self.project(spot.contact.point - aside), aside, &spot.contact) else {
                 break;
             };
             let next = self.descend(begin, aside, least);
@@ -76,24 +79,25 @@ impl Over<'_> {
             }
         }
         let (on, ..) = self.form.nearest(self.body, self.body.place(spot.place));
-        let turned = length(spot.contact.normal - from.normal);
-        Some(Near { contact: spot.contact, on, depth: max(-gap, 0.0), is_round: turned > TURNED })
+        let rounding = f32::EPSILON * largest(from.point) / small;
+        let turned = length(spot.contact.normal - from.normal) > TURNED + 4.0 * rounding;
+        Some(Near { contact: spot.contact, on, depth: max(-gap, 0.0), turned })
     }
 
-    /// Goes to the place of the body put aside that is nearest to the scenery. How far off that is is convex over the body, where that part of it is: it is minimised by
-    /// projected gradients with the steps of Barzilai and Borwein ("Two-Point Step Size Gradient Methods", IMA J. Numer. Anal. 8, 1988). No place of the body is nearer along
-    /// a normal than its farthest corner against that (Frank and Wolfe, Naval Res. Logist. Q. 3, 1956), which tells where to end.
+    /// Goes to the place of the body put aside that is nearest to the scenery. How far off that is is convex over the body: it is minimised by projected
+    /// gradients with the steps of Barzilai and Borwein ("Two-Point Step Size Gradient Methods", IMA J. Numer. Anal. 8, 1988). No place of the body is nearer
+    /// along a normal than its farthest corner against that (Frank and Wolfe, Naval Res. Logist. Q. 3, 1956), which tells where to end.
     fn descend(&self, from: Spot, aside: Vec3, least: f32) -> Spot {
         let longest = 4.0 * length(self.form.half(self.body));
         let (mut spot, mut best, mut step) = (from, from, longest);
         for _ in 0..ASKED {
-            let Contact { point, normal, distance, .. } = spot.contact;
+            let Contact { normal, distance, .. } = spot.contact;
             if dot(normal, spot.place - self.farthest(normal)) <= least {
                 return spot;
             }
             let way = self.project(spot.place - normal * step) - spot.place;
             let share = min((1.0 - LEFT) * distance / max(-dot(normal, way), f32::MIN_POSITIVE), 1.0);
-            let Some(next) = self.ask(spot.place + way * share, aside, point) else { break };
+            let Some(next) = self.ask(spot.place + way * share, aside, &spot.contact) else { break };
             let (way, turned) = (next.place - spot.place, next.contact.normal - normal);
             let (square, bent) = (dot(way, way), dot(way, turned));
             step = if bent > 0.0 { min(square / bent, longest) } else { longest };
@@ -103,14 +107,20 @@ impl Over<'_> {
         best
     }
 
-    /// Asks for the place of the scenery nearest to a place of the body put aside, of the part of it that another place is on.
-    fn ask(&self, place: Vec3, aside: Vec3, other: Vec3) -> Option<Spot> {
+    /// Asks for the place of the scenery nearest to a place of the body put aside, of the part of it that another place is on, and as seen from that side
+    /// of it.
+    fn ask(&self, place: Vec3, aside: Vec3, other: &Contact) -> Option<Spot> {
+        let Contact { point, normal, .. } = *other;
+        let at = place + aside;
+        // What is flat goes on in its plane.
+        let foot = at - normal * dot(normal, at - point);
         let mut nearest = None::<(f32, Contact)>;
         // No farther than the other place is, but for rounding.
-        let reach = length(place + aside - other) + self.form.small(self.body);
-        self.colliders.contacts(place + aside, reach, self.at, &mut |contact| {
-            let far = length(contact.point - other);
-            if nearest.is_none_or(|(least, _)| far < least) {
+        let reach = length(at - point) + self.form.small(self.body);
+        self.colliders.contacts(at, reach, self.at, &mut |contact| {
+            let far = min(length(contact.point - point), length(contact.point - foot));
+            let is_nearer = nearest.is_none_or(|(least, _)| far < least);
+            if is_nearer && dot(contact.normal, normal) > ROUND {
                 nearest = Some((far, *contact));
             }
         });
@@ -118,7 +128,7 @@ impl Over<'_> {
     }
 
     /// How far the body is off the tangent plane of the scenery at a place \[m\].
-    fn gap(&self, contact: &Contact) -> f32 {
+    pub(super) fn gap(&self, contact: &Contact) -> f32 {
         dot(contact.normal, self.farthest(contact.normal) - contact.point)
     }
 

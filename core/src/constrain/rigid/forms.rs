@@ -116,7 +116,9 @@ impl Form<'_> {
     /// The corner of it that is farthest in a direction, in the body's frame \[m\].
     pub(super) fn farthest(&self, body: &Body, toward: Vec3) -> Vec3 {
         match self {
-            Self::Box => body.half.copysign(toward),
+            Self::Box => {
+                Vec3::from_array([0, 1, 2].map(|k| if toward[k] < 0.0 { -body.half[k] } else { body.half[k] }))
+            }
             Self::Hull(hull) | Self::Piece(hull) => hull.farthest(toward) + hull.center,
             Self::Ball => toward * body.radius,
         }

@@ -6,8 +6,8 @@ mod beside;
 mod body;
 mod bound;
 mod boxes;
-#[cfg(feature = "alloc")]
 mod closest;
+#[cfg(feature = "alloc")]
 mod compound;
 #[cfg(feature = "alloc")]
 mod cut;
@@ -66,8 +66,9 @@ use span::Span;
 /// constraint takes them for balls.
 ///
 /// Where two bodies touch is found by separating axes: face on face by clipping (four points), edge on edge by their nearest points. Against
-/// colliders a body's corners count, and for each part of the scenery near it the place where an edge or a face comes nearest to that, or is deepest in it,
-/// which is sought from the body's middle in some ten questions; and along a face what is nearest to its corners. A solid that a body's middle has got into holds it no more. What rises from the floor under a corner by no more than a four-hundredth of the body's least side is part of
+/// colliders a body's corners count, and for each convex part of the scenery near it the place where an edge or a face comes nearest to that, or is
+/// deepest in it, sought from the body's middle; and along a face what is nearest to its corners. A solid that a body's middle has got into may press it
+/// out to any side. What rises from the floor under a corner by no more than a four-hundredth of the body's least side is part of
 /// it, so that nothing catches on seams. A loose ball, a particle with a radius that belongs to no body, is met at the place nearest to it; it does
 /// not spin, and while it touches a body it meets the scenery by the same impulses. Impulses at these points, with those of the last sub-step to
 /// begin with, keep bodies from passing into each other within the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019;

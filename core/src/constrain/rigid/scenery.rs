@@ -12,6 +12,8 @@ use crate::math::{dot, length, max, min};
 use crate::shape::{Aabb, Contact, Segment};
 use glam::{Mat3, Vec3};
 
+/// Parts of the scenery that a piece may touch elsewhere than by its corners, at the most.
+const PARTS: usize = 8;
 /// The cosine of the angle within which two faces are one.
 const ONE_FACE: f32 = 0.9999;
 /// The cosine of the angle within which a corner of the scenery presses no otherwise than a corner of the body.
@@ -134,7 +136,7 @@ impl Visit<'_> {
         let path = Segment { from: middle, to: point, radius: 0.0, during: [at, at] };
         if let Some(hit) = colliders.first_hit(&path) {
             let met = path.at(hit.time);
-            if self.is_past(bodies, &path, met) {
+            if self.is_past(bodies, &path, (met, hit.normal)) {
                 return;
             }
             let floor = Contact {
@@ -165,9 +167,9 @@ impl Visit<'_> {
 
     /// Tells whether a corner that is deep beyond a place, as seen from the middle, has come out of the scenery again on the other side: what is thin lies across
     /// edges or faces there.
-    fn is_past(&self, bodies: &Bodies<'_>, path: &Segment, met: Vec3) -> bool {
+    fn is_past(&self, bodies: &Bodies<'_>, path: &Segment, (met, normal): (Vec3, Vec3)) -> bool {
         let back = Segment { from: path.to, to: path.from, ..*path };
-        length(path.to - met) > self.reach
+        dot(normal, met - path.to) > self.reach
             && bodies.colliders.first_hit(&back).is_some_and(|hit| length(back.at(hit.time) - met) > self.level())
     }
 
@@ -204,27 +206,31 @@ impl Visit<'_> {
     fn scenery(&mut self, bodies: &mut Bodies<'_>) {
         let (body, at) = (self.body, bodies.substep.during[0]);
         let (middle, half) = (self.form.middle(body), self.form.half(body));
-        let mut near = heapless::Vec::<Contact, 8>::new();
-        let mut left_out = 0;
+        let over = Over { form: &self.form, body, colliders: bodies.colliders, at };
+        let (mut near, mut left_out) = (heapless::Vec::<(f32, Contact), PARTS>::new(), 0);
         bodies.colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
-            left_out += u64::from(near.push(*contact).is_err());
+            if over.gap(contact) > self.reach || self.is_stood_on(contact) {
+                return;
+            }
+            let (.., far) = self.form.nearest(body, body.place(contact.point));
+            if let Err(one) = near.push((far, *contact)) {
+                left_out += 1;
+                // Of more than there is room for the nearest count.
+                let farthest = near.iter_mut().reduce(|most, other| if other.0 > most.0 { other } else { most });
+                farthest.into_iter().filter(|most| one.0 < most.0).for_each(|most| *most = one);
+            }
         });
         bodies.report.caps.contacts += left_out;
-        for &contact in &near {
+        for &(_, contact) in &near {
             let over = Over { form: &self.form, body, colliders: bodies.colliders, at };
-            if self.is_stood_on(&contact) {
-                continue;
-            }
-            let Some(Near { contact, on, depth, is_round }) = over.closest(contact, self.reach) else { continue };
-            let normal = if is_round { self.face(on, contact.normal) } else { contact.normal };
+            let Some(Near { contact, on, depth, turned }) = over.closest(contact, self.reach) else { continue };
+            let normal = if turned { self.face(on, contact.normal) } else { contact.normal };
             let out = body.rotation.transpose() * -normal;
             if !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) {
                 continue;
             }
-            let normal =
-                if is_round { self.beside_known(&contact, on, normal) } else { self.support(&contact, normal) };
-            if let Some(normal) = normal {
-                self.is_on_round |= is_round;
+            if let Some(normal) = self.support(&contact, on, (normal, turned)) {
+                self.is_on_round |= turned;
                 self.put(bodies, &Contact { normal, ..contact }, on);
                 let facing = self.form.facing(out);
                 if dot(facing, out) > ALIKE {
@@ -240,39 +246,31 @@ impl Visit<'_> {
         slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE && self.is_level(slot, contact))
     }
 
-    /// The normal of the body's surface at a place on it where the scenery's is so, as that presses on it: exactly that of a face, or across an edge.
+    /// The normal of the body's surface at a place on it where the scenery's is so, as that presses on it: that of a face, or across an edge.
     fn face(&self, on: Vec3, normal: Vec3) -> Vec3 {
         let out = self.body.rotation.transpose() * -normal;
         let (_, out, _) = self.form.nearest(self.body, on + out * (0.1 * self.body.small()));
         self.body.rotation * -out
     }
 
-    /// The normal along which what is not flat presses on a place of the body; none, if that is a corner which meets it alike, or it is the edge of what corners stand
-    /// on.
-    fn beside_known(&self, contact: &Contact, on: Vec3, normal: Vec3) -> Option<Vec3> {
-        let slots = self.slots.iter().filter(|slot| slot.count > 0);
-        let mut alike = slots.clone().filter(|slot| dot(slot.normal, normal) > ALIKE).peekable();
-        let is_known = if alike.peek().is_some() {
-            alike.flat_map(Manifold::points).any(|point| length(point.places[1] - on) <= self.level())
-        } else {
-            slots.clone().any(|slot| self.is_level(slot, contact))
-        };
-        (!is_known).then_some(normal)
-    }
-
     /// Tells whether a place of the scenery is level with a face on which the body stands, and hangs over nowhere: such an edge is a seam.
     fn is_level(&self, slot: &Manifold, contact: &Contact) -> bool {
         let (ground, normal) = (slot.points[0].places[0], slot.normal);
         let lowest = self.body.point(self.form.farthest(self.body, -(self.body.rotation.transpose() * normal)));
-        dot(normal, contact.point - ground).abs() <= self.level() && dot(normal, lowest - ground) >= -self.level()
+        let below = |place: Vec3| dot(normal, place - lowest);
+        let feet = slot.points().iter().map(|point| below(self.body.point(point.places[1])));
+        dot(normal, contact.point - ground).abs() <= self.level() && feet.fold(f32::INFINITY, min) <= self.level()
     }
 
-    /// The normal along which a place of the scenery presses on a face of the body; none, if corners do all that it would.
-    fn support(&self, contact: &Contact, normal: Vec3) -> Option<Vec3> {
+    /// The normal along which the scenery presses on a place of the body, where its own is so, which is another than the one seen from the middle if it has `turned`; none, if
+    /// corners do all that it would.
+    fn support(&self, contact: &Contact, on: Vec3, (normal, turned): (Vec3, bool)) -> Option<Vec3> {
         let mut slots = self.slots.iter().filter(|slot| slot.count > 0);
         if let Some(slot) = slots.clone().find(|slot| dot(slot.normal, normal) > ALIKE) {
+            let is_known = slot.points().iter().any(|point| length(point.places[1] - on) <= self.level());
             // Who stands on fewer feet may hang over an edge.
-            return ((slot.count as usize) < POINTS).then_some(slot.normal);
+            let is_met = is_known || slot.count as usize == POINTS && self.is_level(slot, contact);
+            return (!is_met).then_some(if turned { normal } else { slot.normal });
         }
         // Corners stand on that very face, or on one that ends there.
         let is_met = slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE || self.is_level(slot, contact));
@@ -338,7 +336,8 @@ impl Visit<'_> {
         }
     }
 
-    /// The number of the slot of a face: of its normal, and of what moves as the first place there does or feels like it; a free one if there is none.
+    /// The number of the slot of a face: of its normal, and of what moves as the first place there does or feels like it; a free one if there is none; and
+    /// where none is left, that whose normal is most alike and that feels like it.
     fn slot(&mut self, bodies: &Bodies<'_>, contact: &Contact) -> Option<usize> {
         let Contact { normal, velocity, material, .. } = *contact;
         let own = (self.body.material as u16).checked_sub(1);
@@ -358,9 +357,17 @@ impl Visit<'_> {
         if let Some(number) = self.slots.iter().position(on) {
             return Some(number);
         }
-        let number = self.slots.iter().position(|slot| slot.count == 0)?;
-        self.slots[number] = fresh();
-        Some(number)
+        if let Some(number) = self.slots.iter().position(|slot| slot.count == 0) {
+            self.slots[number] = fresh();
+            return Some(number);
+        }
+        // What is rough presses in more directions than there is room for.
+        let mut best = (None, ALIKE);
+        for (number, slot) in self.slots.iter().enumerate().filter(|(_, slot)| is_like(slot)) {
+            let along = dot(slot.normal, normal);
+            best = if along > best.1 { (Some(number), along) } else { best };
+        }
+        best.0
     }
 
     /// The number of the slot of a face that is left out for another with a gap, if it is farther from the body: of more faces than there are
