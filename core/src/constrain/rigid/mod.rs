@@ -86,8 +86,9 @@ use span::Span;
 /// slowly than that stops. Without forces nothing sleeps.
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for twelve
-/// touching pairs a body, six more of pieces for each piece beyond its first, two for each ball and three directions of the scenery, of more the
-/// deepest; what finds none is counted (`caps.contacts`).
+/// touching pairs a body, six more of pieces for each piece beyond its first, two for each ball and three directions of the scenery. A further one
+/// goes with that which is within 26° of it, and else the deepest three count, as do the eight nearest parts of the scenery for each piece; what finds no
+/// room is counted (`caps.contacts`).
 ///
 /// [`Observer`](crate::Observer)s are told of each blow ([`touched`](crate::Observer::touched)): for a body its first living particle stands,
 /// with the mass of the whole and the velocities of the body where it was struck.

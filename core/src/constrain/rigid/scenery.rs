@@ -262,8 +262,8 @@ impl Visit<'_> {
         dot(normal, contact.point - ground).abs() <= self.level() && feet.fold(f32::INFINITY, min) <= self.level()
     }
 
-    /// The normal along which the scenery presses on a place of the body, where its own is so, which is another than the one seen from the middle if it has `turned`; none, if
-    /// corners do all that it would.
+    /// The normal along which the scenery presses on a place of the body: its own, if it has `turned` and is another than the one seen from the middle, or that of
+    /// corners on a face alike; none, if corners do all that it would.
     fn support(&self, contact: &Contact, on: Vec3, (normal, turned): (Vec3, bool)) -> Option<Vec3> {
         let mut slots = self.slots.iter().filter(|slot| slot.count > 0);
         if let Some(slot) = slots.clone().find(|slot| dot(slot.normal, normal) > ALIKE) {
