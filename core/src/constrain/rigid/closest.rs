@@ -15,8 +15,8 @@ const ROUNDS: u32 = 4;
 const LEFT: f32 = 0.1;
 /// How much nearer the two may be than the place that has been found, as a share of a length that is small beside the body.
 const NEARLY: f32 = 0.05;
-/// The cosine of an angle by which the normal turns where a surface is seen from its other side.
-const ROUND: f32 = -0.9;
+/// The cosine of the least angle by which the normal turns where a surface comes to be seen from its other side.
+const OTHER_SIDE: f32 = -0.9;
 /// By how much the normals of what is round differ in two places at the least.
 const TURNED: f32 = 1e-5;
 
@@ -120,7 +120,7 @@ impl Over<'_> {
         self.colliders.contacts(at, reach, self.at, &mut |contact| {
             let far = min(length(contact.point - point), length(contact.point - foot));
             let is_nearer = nearest.is_none_or(|(least, _)| far < least);
-            if is_nearer && dot(contact.normal, normal) > ROUND {
+            if is_nearer && dot(contact.normal, normal) > OTHER_SIDE {
                 nearest = Some((far, *contact));
             }
         });

@@ -313,10 +313,9 @@ impl Visit<'_> {
         // Where it is over the surface, whatever the way on which that was met.
         let over = self.body.point(place);
         let gap = dot(normal, over - point);
-        let on = over - normal * gap;
+        let (on, level) = (over - normal * gap, self.level());
         let Some(number) = self.slot(bodies, contact).or_else(|| self.give_way(bodies, contact, gap)) else { return };
         let Some(slot) = self.slots.get_mut(number) else { return };
-        let level = 0.25 * self.body.small();
         if slot.points().iter().any(|other| length(other.places[1] - place) <= level) {
             return;
         }
