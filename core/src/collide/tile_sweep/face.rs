@@ -17,7 +17,7 @@ use glam::Vec3;
 
 /// Rows that leap and are held against a face before the next ones leap: so few that they are in the cache meanwhile, with where they
 /// began.
-const LEAP: usize = 1024;
+const LEAP: usize = 512;
 
 /// Moves some rows of a tile, whose ends these are, and keeps in other columns where they were. Says how far they get.
 pub(crate) type Leap<'l> = dyn FnMut(Range<usize>, Ends<'_>, Ends<'_>) -> Option<Extents> + 'l;
