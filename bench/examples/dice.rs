@@ -1,13 +1,14 @@
 //! The same throw of dice on a table by `RigidBodies`, and by rapier3d in the same run:
-//! `cargo run --release -p pointmass-bench --features rapier --example dice -- [DICE] [SECONDS] [SUBSTEPS] [WHO]`.
+//! `cargo run --release -p pointmass-bench --features rapier --example dice -- [DICE] [SECONDS] [SUBSTEPS] [WHO] [CELLS]`.
 //!
 //! Times are means over steps of 1/60 s. WHO is `ours`, `rapier`, `awake` (rapier3d without sleeping) or `all`: with one of them alone instructions
-//! can be counted, as the difference of two runs of other lengths.
+//! can be counted, as the difference of two runs of other lengths. The table is a plane, or a mesh of so many CELLS a side.
 
 use pointmass::index::Structure;
-use pointmass::shape::Plane;
+use pointmass::rays;
+use pointmass::shape::{Collider, MeshBuf, Plane};
 use pointmass::{Gravity, Scene, Symplectic, Time, Vec3};
-use pointmass_bench::dice::{Pose, Throw, deepest};
+use pointmass_bench::dice::{Pose, Throw, deepest, table};
 use pointmass_bench::started;
 use std::time::Instant;
 
@@ -15,27 +16,34 @@ fn main() {
     let argument = |i: usize, default: usize| std::env::args().nth(i).and_then(|x| x.parse().ok()).unwrap_or(default);
     let (dice, seconds, substeps) = (argument(1, 1200), argument(2, 5), argument(3, 10) as u32);
     let who = std::env::args().nth(4).unwrap_or_else(|| "all".into());
-    let throw = Throw::of(dice);
+    let (throw, cells) = (Throw::of(dice), argument(5, 0) as u32);
     println!("{dice} dice, {seconds} s");
     println!("{:28}{:>12}{:>14}{:>16}{:>16}", "", "ms a step", "last second", "fastest m/s", "overlap/side");
     if who == "all" || who == "ours" {
-        ours(&throw, seconds, substeps);
+        ours(&throw, seconds, substeps, cells);
     }
     #[cfg(feature = "rapier")]
     for (name, sleeps) in [("rapier", true), ("awake", false)] {
         if who == "all" || who == name {
-            rapier(&throw, seconds, sleeps);
+            rapier(&throw, seconds, sleeps, cells);
         }
     }
 }
 
-fn ours(throw: &Throw, seconds: usize, substeps: u32) {
+fn ours(throw: &Throw, seconds: usize, substeps: u32, cells: u32) {
     let (start, bodies) = throw.bodies();
-    let (materials, table) = (throw.materials(), Plane { point: Vec3::ZERO, normal: Vec3::Y });
+    let materials = throw.materials();
+    let table: Box<dyn Collider> = match cells {
+        0 => Box::new(Plane { point: Vec3::ZERO, normal: Vec3::Y }),
+        cells => {
+            let (vertices, triangles) = table(cells);
+            Box::new(MeshBuf::new(vertices, triangles).expect("a table is a mesh").indexed(rays::Structure::Bvh))
+        }
+    };
     let scene = Scene {
         start: &start,
         forces: &Gravity::EARTH,
-        colliders: &table,
+        colliders: &*table,
         materials: &materials,
         constraints: &bodies,
         substeps,
@@ -58,7 +66,7 @@ fn ours(throw: &Throw, seconds: usize, substeps: u32) {
 }
 
 #[cfg(feature = "rapier")]
-fn rapier(throw: &Throw, seconds: usize, sleeps: bool) {
+fn rapier(throw: &Throw, seconds: usize, sleeps: bool, cells: u32) {
     use pointmass_peers::rapier::{Cuboids, Die};
     let die = |die: &pointmass_bench::dice::Die| Die {
         place: die.place.to_array(),
@@ -67,7 +75,10 @@ fn rapier(throw: &Throw, seconds: usize, sleeps: bool) {
         spin: die.spin.to_array(),
     };
     let dice: Vec<_> = throw.dice.iter().map(die).collect();
-    let mut cuboids = Cuboids::new(&dice, throw.half, throw.mass, [throw.friction, throw.elasticity], sleeps);
+    let (vertices, triangles) = table(cells);
+    let mesh = (vertices.iter().map(Vec3::to_array).collect::<Vec<_>>(), triangles);
+    let touch = [throw.friction, throw.elasticity];
+    let mut cuboids = Cuboids::new(&dice, throw.half, throw.mass, touch, sleeps, (cells > 0).then_some(&mesh));
     let times = timed(seconds, || cuboids.step());
     let poses: Vec<_> = cuboids.poses().map(|(place, axes)| (Vec3::from(place), axes.map(Vec3::from))).collect();
     row(if sleeps { "rapier3d" } else { "rapier3d, never sleeping" }, times, cuboids.fastest(), throw, &poses);

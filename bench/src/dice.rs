@@ -33,6 +33,19 @@ pub struct Die {
     pub spin: Vec3,
 }
 
+/// A flat table of 6 m at y = 0 as a mesh, so many cells a side, of two triangles each: its vertices \[m\], and whose corners they are.
+#[must_use]
+pub fn table(cells: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let at = |i: u32| 6.0 * i as f32 / cells as f32 - 3.0;
+    let rows = |ends: u32| (0..ends).flat_map(move |i| (0..ends).map(move |j| (i, j)));
+    let number = |i: u32, j: u32| i * (cells + 1) + j;
+    let halves = |(i, j)| {
+        let [a, b, c, d] = [number(i, j), number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)];
+        [[a, b, c], [a, c, d]]
+    };
+    (rows(cells + 1).map(|(i, j)| Vec3::new(at(i), 0.0, at(j))).collect(), rows(cells).flat_map(halves).collect())
+}
+
 /// A die as it lies: its middle \[m\], and the unit vectors along its sides.
 pub type Pose = (Vec3, [Vec3; 3]);
 

@@ -100,7 +100,10 @@ pub struct Die {
     pub spin: [f32; 3],
 }
 
-/// Dice thrown on a half-space below y = 0 in rapier: one thread, its defaults for everything, steps of 1/60 s.
+/// The vertices \[m\] and triangles of a table.
+pub type Table = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
+/// Dice thrown on a half-space below y = 0 or a mesh in rapier: one thread, its defaults for everything, steps of 1/60 s.
 pub struct Cuboids {
     world: PhysicsWorld,
     dice: Vec<RigidBodyHandle>,
@@ -108,11 +111,29 @@ pub struct Cuboids {
 
 impl Cuboids {
     /// Dice of half a side \[m\] and a mass \[kg\] as they are thrown, and the table; `touch` are the coefficients of friction and restitution.
+    ///
+    /// # Panics
+    ///
+    /// Where rapier takes the table for no mesh.
     #[must_use]
-    pub fn new(dice: &[Die], half: f32, mass: f32, touch: [f32; 2], sleeps: bool) -> Self {
+    pub fn new(
+        dice: &[Die],
+        half: f32,
+        mass: f32,
+        touch: [f32; 2],
+        sleeps: bool,
+        table: Option<&Table>,
+    ) -> Self {
         let mut world = PhysicsWorld { gravity: Vector::new(0.0, -GRAVITY, 0.0), ..PhysicsWorld::default() };
         let touching = |collider: ColliderBuilder| collider.friction(touch[0]).restitution(touch[1]);
-        world.insert_collider(touching(ColliderBuilder::new(SharedShape::halfspace(Vector::Y))), None);
+        let table = match table {
+            Some((vertices, triangles)) => {
+                let vertices = vertices.iter().map(|&place| place.into()).collect();
+                SharedShape::trimesh(vertices, triangles.clone()).expect("the table is a mesh")
+            }
+            None => SharedShape::halfspace(Vector::Y),
+        };
+        world.insert_collider(touching(ColliderBuilder::new(table)), None);
         let throw = |die: &Die| {
             let body = RigidBodyBuilder::dynamic().translation(die.place.into()).rotation(die.turn.into());
             let body = body.linvel(die.velocity.into()).angvel(die.spin.into()).can_sleep(sleeps);

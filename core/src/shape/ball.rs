@@ -67,7 +67,7 @@ pub(super) fn leaning(center: Vec3, gap: Vec3, normal: Vec3, [reach, size]: [f32
         return None;
     }
     let slack = Segment::slack_within(largest(center), distance, size);
-    Some(Contact { point: minus(center, gap), normal, distance, slack, velocity: Vec3::ZERO, material: None })
+    Some(Contact { point: minus(center, gap), normal, distance, slack, velocity: Vec3::ZERO, material: None, face: 0 })
 }
 
 /// When what moves from `offset` by `step` leaves the circle or sphere of `radius` about the origin, and the unit normal

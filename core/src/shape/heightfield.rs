@@ -379,10 +379,10 @@ impl Collider for HeightField<'_> {
     }
 
     /// One for each triangle within reach.
-    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let near = Aabb { min: center - reach, max: center + reach };
         if self.bounds.overlaps(&near) {
-            self.near(&near, |_, triangle| triangle.contacts(center, reach, at, visit));
+            self.near(&near, |face, triangle| triangle.contact(center, reach, face).iter().for_each(&mut *visit));
         }
     }
 }

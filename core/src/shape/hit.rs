@@ -44,6 +44,8 @@ pub struct Contact {
     pub velocity: Vec3,
     /// Number of its material in the scene, if it has one.
     pub material: Option<u16>,
+    /// Which triangle of a mesh; zero for what has but one part.
+    pub face: u32,
 }
 
 /// Where what moves takes a particle that rests on it.

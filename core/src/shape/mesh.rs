@@ -254,11 +254,11 @@ impl Collider for Mesh<'_> {
         hulls.near_box(&self.bounds, marks);
     }
 
-    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+    fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
         let bounds = Aabb { min: center - reach, max: center + reach }.with_slack();
         self.index.near(self, &bounds, &mut |piece| {
             if let Some(face) = self.face(piece) {
-                face.contacts(center, reach, at, visit);
+                face.contact(center, reach, piece as u32).iter().for_each(&mut *visit);
             }
         });
     }

@@ -75,8 +75,10 @@ impl<C: Mapped> Collider for Placed<C> {
         };
         let Some([scale, _]) = self.scale else {
             let near = Aabb { min: center - reach, max: center + reach }.with_slack();
-            let mut made = |contact: &Contact| visit(&Contact { material: self.material, ..*contact });
-            return self.collider.image(to_world, &near, &mut |_, image| image.contacts(center, reach, at, &mut made));
+            return self.collider.image(to_world, &near, &mut |face, image| {
+                let made = &mut |contact: &Contact| visit(&Contact { material: self.material, face, ..*contact });
+                image.contacts(center, reach, at, made);
+            });
         };
         self.collider.contacts(to_local.point(center), reach / scale, at, &mut |contact| {
             let normal = unit(to_local.linear.transpose() * contact.normal);
@@ -84,7 +86,7 @@ impl<C: Mapped> Collider for Placed<C> {
             let point = center - normal * distance;
             let velocity = carried(to_world, contact.velocity);
             let slack = contact.slack * scale + Segment::new(center, center).slack(largest(to_world.shift));
-            visit(&Contact { point, normal, distance, slack, velocity, material: self.material });
+            visit(&Contact { point, normal, distance, slack, velocity, material: self.material, face: contact.face });
         });
     }
 

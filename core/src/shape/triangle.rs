@@ -1,6 +1,6 @@
 //! One triangle, and the arithmetic that meshes share with it.
 
-use super::ball::{Filled, approach, gap_to_line, lean};
+use super::ball::{Filled, approach, gap_to_line, leaning};
 use super::exact::{Lattice, cross, volume};
 use super::plane::crossing;
 use super::sliver::Sliver;
@@ -108,10 +108,7 @@ impl Collider for Triangle {
     }
 
     fn contacts(&self, center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
-        let (across, is_plain) = self.normal();
-        let gap = if is_plain { self.gap(center) } else { Sliver::new(self.corners, across).gap(center) };
-        let normal = if gap == Vec3::ZERO { unit(across) } else { unit(gap) };
-        lean(center, gap, normal, [reach, size(self)], visit);
+        self.contact(center, reach, 0).iter().for_each(visit);
     }
 }
 
@@ -231,6 +228,14 @@ fn permanent(x: Vec3, y: Vec3) -> Vec3 {
 }
 
 impl Triangle {
+    /// The place of it that a ball leans on, if there is one; the triangle of a mesh has a number.
+    pub(super) fn contact(&self, center: Vec3, reach: f32, face: u32) -> Option<Contact> {
+        let (across, is_plain) = self.normal();
+        let gap = if is_plain { self.gap(center) } else { Sliver::new(self.corners, across).gap(center) };
+        let normal = if gap == Vec3::ZERO { unit(across) } else { unit(gap) };
+        Some(Contact { face, ..leaning(center, gap, normal, [reach, size(self)])? })
+    }
+
     /// The same, so many times as large.
     pub(super) fn scaled(&self, scale: f32) -> Self {
         Self { corners: self.corners.map(|corner| corner * scale) }

@@ -37,6 +37,8 @@ pub(super) struct Over<'a> {
     pub(super) body: &'a Body,
     pub(super) colliders: &'a dyn Collider,
     pub(super) at: Time,
+    /// The triangles of a mesh that are one part of the scenery: those that begin where one of them is nearest to the body's middle.
+    pub(super) faces: &'a [u32],
 }
 
 /// A place of the body in the world, and the place of the scenery that is nearest to it where that is put aside.
@@ -118,8 +120,11 @@ impl Over<'_> {
         // No farther than the other place is, but for rounding.
         let reach = length(at - point) + self.form.small(self.body);
         self.colliders.contacts(at, reach, self.at, &mut |contact| {
-            let far = min(length(contact.point - point), length(contact.point - foot));
-            let is_nearer = nearest.is_none_or(|(least, _)| far < least);
+            let far = match self.faces {
+                [_, _, ..] => contact.distance,
+                _ => min(length(contact.point - point), length(contact.point - foot)),
+            };
+            let is_nearer = self.faces.contains(&contact.face) && nearest.is_none_or(|(least, _)| far < least);
             if is_nearer && dot(contact.normal, normal) > OTHER_SIDE {
                 nearest = Some((far, *contact));
             }

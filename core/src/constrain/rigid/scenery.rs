@@ -9,15 +9,37 @@ use super::manifold::{DIRECTIONS, Manifold, POINTS, Point};
 use super::skin;
 use crate::material::on_surface;
 use crate::math::{dot, length, max, min};
-use crate::shape::{Aabb, Contact, Segment};
+use crate::shape::{Aabb, Contact, Facing, Segment, Surface, Triangle};
 use glam::{Mat3, Vec3};
 
 /// Parts of the scenery that a piece may touch elsewhere than by its corners, at the most.
 const PARTS: usize = 8;
+/// Triangles of a mesh that are one of them, at the most.
+const FACES: usize = 12;
 /// The cosine of the angle within which two faces are one.
 const ONE_FACE: f32 = 0.9999;
+/// How far from a place of the scenery another is at the most that is nearer to what is above it, as a share of how high that is.
+const WITHIN: f32 = 0.9;
 /// The cosine of the angle within which a corner of the scenery presses no otherwise than a corner of the body.
 const ALIKE: f32 = 0.9;
+
+/// A part of the scenery that is near a piece: something convex, or the triangles of a mesh around an edge or a corner that is nearest of all of them to the
+/// piece's middle.
+struct Part {
+    contact: Contact,
+    /// How far that is from the piece \[m\].
+    far: f32,
+    faces: heapless::Vec<u32, FACES>,
+}
+
+impl Part {
+    /// Tells whether another place of the scenery is this one, but for so much \[m\].
+    fn is_at(&self, other: &Contact, much: f32) -> bool {
+        let own = &self.contact;
+        let is_alike = own.material == other.material && own.velocity == other.velocity;
+        is_alike && length(own.point - other.point) <= much && dot(own.normal, other.normal) > ONE_FACE
+    }
+}
 
 /// A body among the scenery, and which of its pieces is looked at.
 struct Visit<'a> {
@@ -73,12 +95,16 @@ pub(super) fn meet(
     let count = forms.count(number);
     for piece in 0..count {
         let form = forms.piece(number, piece);
-        if count > 1 && !bodies.colliders.may_touch(&about(form.middle(body), length(form.half(body)) + reach)) {
+        let near = about(form.middle(body), length(form.half(body)) + reach);
+        if count > 1 && !bodies.colliders.may_touch(&near) {
             continue;
         }
         (visit.piece, visit.form) = (piece, form);
         (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
-        visit.scenery(bodies);
+        // Corners do all that one flat face does.
+        if !matches!(bodies.colliders.facing(&near), Facing::Face(_)) {
+            visit.scenery(bodies);
+        }
     }
     // Slots are taken one after the other.
     let met = visit.slots.iter().filter(|slot| slot.count > 0).count() as u32;
@@ -146,6 +172,7 @@ impl Visit<'_> {
                 slack: hit.slack,
                 velocity: hit.velocity,
                 material: hit.material,
+                face: hit.face,
             };
             self.put(bodies, &floor, place);
             // From before it other faces are seen.
@@ -206,27 +233,35 @@ impl Visit<'_> {
     fn scenery(&mut self, bodies: &mut Bodies<'_>) {
         let (body, at) = (self.body, bodies.substep.during[0]);
         let (middle, half) = (self.form.middle(body), self.form.half(body));
-        let over = Over { form: &self.form, body, colliders: bodies.colliders, at };
-        let (mut near, mut left_out) = (heapless::Vec::<(f32, Contact), PARTS>::new(), 0);
+        let over = Over { form: &self.form, body, colliders: bodies.colliders, at, faces: &[] };
+        let (mut near, mut left_out) = (heapless::Vec::<Part, PARTS>::new(), 0);
         bodies.colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
             if over.gap(contact) > self.reach || self.is_stood_on(contact) {
                 return;
             }
-            let (.., far) = self.form.nearest(body, body.place(contact.point));
-            if let Err(one) = near.push((far, *contact)) {
+            if let Some(part) = near.iter_mut().find(|part| part.is_at(contact, 0.1 * self.level())) {
+                left_out += u64::from(part.faces.push(contact.face).is_err());
+                return;
+            }
+            let (.., out) = self.form.nearest(body, body.place(contact.point));
+            let far = out + 0.1 * contact.distance;
+            let faces = heapless::Vec::from_iter([contact.face]);
+            if let Err(one) = near.push(Part { far, contact: *contact, faces }) {
                 left_out += 1;
                 // Of more than there is room for the nearest count.
-                let farthest = near.iter_mut().reduce(|most, other| if other.0 > most.0 { other } else { most });
-                farthest.into_iter().filter(|most| one.0 < most.0).for_each(|most| *most = one);
+                let farthest = near.iter_mut().reduce(|most, other| if other.far > most.far { other } else { most });
+                if let Some(most) = farthest.filter(|most| one.far < most.far) {
+                    *most = one;
+                }
             }
         });
         bodies.report.caps.contacts += left_out;
-        for &(_, contact) in &near {
-            let over = Over { form: &self.form, body, colliders: bodies.colliders, at };
+        for &Part { contact, ref faces, .. } in &near {
+            let over = Over { form: &self.form, body, colliders: bodies.colliders, at, faces };
             let Some(Near { contact, on, depth, turned }) = over.closest(contact, self.reach) else { continue };
             let normal = if turned { self.face(on, contact.normal) } else { contact.normal };
             let out = body.rotation.transpose() * -normal;
-            if !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) {
+            if !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) || turned && self.is_seam(bodies, &contact) {
                 continue;
             }
             if let Some(normal) = self.support(&contact, on, (normal, turned)) {
@@ -240,10 +275,28 @@ impl Visit<'_> {
         }
     }
 
-    /// Tells whether corners do all that a flat face of the scenery would.
+    /// Tells whether corners do all that a flat face of the scenery would, or a seam in it: who stands on four hangs over nothing.
     fn is_stood_on(&self, contact: &Contact) -> bool {
-        let mut slots = self.slots.iter().filter(|slot| slot.count as usize == POINTS);
-        slots.any(|slot| dot(slot.normal, contact.normal) > ONE_FACE && self.is_level(slot, contact))
+        self.slots.iter().any(|slot| slot.count as usize == POINTS && self.is_level(slot, contact))
+    }
+
+    /// Tells whether a place of the body is between points on a face.
+    fn is_between(&self, slot: &Manifold, on: Vec3) -> bool {
+        let points = slot.points();
+        let at = |i: usize| points.get(i).or(points.last()).map_or(on, |point| point.places[1]);
+        let corners = Triangle { corners: [at(0), at(1), at(2)] };
+        points.len() == POINTS || length(corners.nearest(on) - on) <= self.level()
+    }
+
+    /// Tells whether the scenery goes on beyond a place no lower than across a normal there: what comes from that side meets the scenery there by a corner only, if
+    /// at all, as where triangles of a floor end on each other, or in a valley.
+    fn is_seam(&self, bodies: &Bodies<'_>, contact: &Contact) -> bool {
+        let (away, mut is_seam) = (self.body.small(), false);
+        bodies.colliders.contacts(contact.point + contact.normal * away, away, bodies.substep.during[0], &mut |other| {
+            let aside = length(other.point - contact.point);
+            is_seam |= aside < WITHIN * away && dot(other.normal, contact.normal) < ONE_FACE;
+        });
+        is_seam
     }
 
     /// The normal of the body's surface at a place on it where the scenery's is so, as that presses on it: that of a face, or across an edge.
@@ -268,8 +321,8 @@ impl Visit<'_> {
         let mut slots = self.slots.iter().filter(|slot| slot.count > 0);
         if let Some(slot) = slots.clone().find(|slot| dot(slot.normal, normal) > ALIKE) {
             let is_known = slot.points().iter().any(|point| length(point.places[1] - on) <= self.level());
-            // Who stands on fewer feet may hang over an edge.
-            let is_met = is_known || slot.count as usize == POINTS && self.is_level(slot, contact);
+            // Who stands on fewer feet may hang over an edge beyond them.
+            let is_met = is_known || self.is_level(slot, contact) && self.is_between(slot, on);
             return (!is_met).then_some(if turned { normal } else { slot.normal });
         }
         // Corners stand on that very face, or on one that ends there.
