@@ -116,14 +116,7 @@ impl Cuboids {
     ///
     /// Where rapier takes the table for no mesh.
     #[must_use]
-    pub fn new(
-        dice: &[Die],
-        half: f32,
-        mass: f32,
-        touch: [f32; 2],
-        sleeps: bool,
-        table: Option<&Table>,
-    ) -> Self {
+    pub fn new(dice: &[Die], half: f32, mass: f32, touch: [f32; 2], sleeps: bool, table: Option<&Table>) -> Self {
         let mut world = PhysicsWorld { gravity: Vector::new(0.0, -GRAVITY, 0.0), ..PhysicsWorld::default() };
         let touching = |collider: ColliderBuilder| collider.friction(touch[0]).restitution(touch[1]);
         let table = match table {

@@ -135,7 +135,9 @@ fn bodies_are_stopped_by_meshes() {
 
 /// Lets so many bodies fall on solids of some kind, or the long run's number of them.
 fn fall_on(random: &mut Random, count: usize, kind: impl Fn(usize) -> usize) {
-    for case in 0..if cfg!(debug_assertions) { count } else { 25 * count }.max(std::env::var("LIST").map_or(0, |n| n.parse().unwrap_or(0))) {
+    for case in 0..if cfg!(debug_assertions) { count } else { 25 * count }
+        .max(std::env::var("LIST").map_or(0, |n| n.parse().unwrap_or(0)))
+    {
         let scale = [0.01, 1.0, 30.0][case % 3];
         let at = Vec3::ONE * if case % 4 == 3 { 20.0 * scale } else { 0.0 };
         let solid = Solid::any(random, kind(case), (at, scale));
@@ -187,8 +189,17 @@ fn fall_on(random: &mut Random, count: usize, kind: impl Fn(usize) -> usize) {
             let most = 0.03 * half.max_element() + 0.3 * fast / (60.0 * substeps as f32);
             if std::env::var("LIST").is_ok() {
                 if -gap >= most {
-                    let sz = match &solid { Solid::Mesh(p, m) => format!("{:?} {}", p.half / scale, m.triangles().len()), _ => String::new() };
-                    println!("BAD {case} after {frame}: {:.4} most {:.4} half {:?} {substeps} {method:?} solid {sz} caps {}", -gap / scale, most / scale, half / scale, system.totals().caps.contacts);
+                    let sz = match &solid {
+                        Solid::Mesh(p, m) => format!("{:?} {}", p.half / scale, m.triangles().len()),
+                        _ => String::new(),
+                    };
+                    println!(
+                        "BAD {case} after {frame}: {:.4} most {:.4} half {:?} {substeps} {method:?} solid {sz} caps {}",
+                        -gap / scale,
+                        most / scale,
+                        half / scale,
+                        system.totals().caps.contacts
+                    );
                     break;
                 }
                 continue;

@@ -102,6 +102,15 @@ pub trait Collider: Sync {
         let _ = (center, reach, at, visit);
     }
 
+    /// The same of the triangles of meshes with these numbers, and of what has but one part if zero is among them. By default it is sought among all.
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        self.contacts(center, reach, at, &mut |contact| {
+            if faces.contains(&contact.face) {
+                visit(contact);
+            }
+        });
+    }
+
     /// The crease that an acceleration presses what leans on all within `reach` \[m\] of `center` into at an instant: where two of them meet, or more; the sharpest, if
     /// that is not known. None, where any of those moves. By default it is sought among the contacts; what has no two surfaces that meet need not look.
     fn crease(&self, center: Vec3, reach: f32, at: Time, acceleration: Option<Vec3>) -> Option<Crease> {
@@ -257,6 +266,9 @@ impl<T: Collider + ?Sized> Collider for &T {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         (**self).contacts(center, reach, at, visit);
     }
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        (**self).contacts_of(faces, center, reach, at, visit);
+    }
     fn crease(&self, center: Vec3, reach: f32, at: Time, acceleration: Option<Vec3>) -> Option<Crease> {
         (**self).crease(center, reach, at, acceleration)
     }
@@ -309,6 +321,20 @@ fn taken(thing: &(impl Collider + ?Sized), way: &Segment) -> Vec3 {
     thing.carry_on(way).unwrap_or_else(held)
 }
 
+/// Visits the contacts of all faces of a collider with a ball, or of some.
+pub(super) fn contacts_among(
+    of: &impl Collider,
+    faces: Option<&[u32]>,
+    (center, reach): (Vec3, f32),
+    at: Time,
+    visit: &mut dyn FnMut(&Contact),
+) {
+    match faces {
+        Some(faces) => of.contacts_of(faces, center, reach, at, visit),
+        None => of.contacts(center, reach, at, visit),
+    }
+}
+
 impl<T: Collider> Collider for [T] {
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
         let bounds = segment.bounds();
@@ -330,6 +356,10 @@ impl<T: Collider> Collider for [T] {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         let bounds = Aabb { min: center - reach, max: center + reach };
         self.iter().filter(|c| c.may_touch(&bounds)).for_each(|c| c.contacts(center, reach, at, visit));
+    }
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let bounds = Aabb { min: center - reach, max: center + reach };
+        self.iter().filter(|c| c.may_touch(&bounds)).for_each(|c| c.contacts_of(faces, center, reach, at, visit));
     }
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
         self.carry_on(&Segment::waiting(point, radius, during)).unwrap_or(point)
@@ -374,6 +404,9 @@ macro_rules! lists {
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.as_slice().contacts(center, reach, at, visit);
+            }
+            fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+                self.as_slice().contacts_of(faces, center, reach, at, visit);
             }
             fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
                 self.as_slice().carry(point, radius, during)
@@ -433,6 +466,14 @@ macro_rules! tuples {
                 let bounds = Aabb { min: center - reach, max: center + reach };
                 $(if $name.may_touch(&bounds) {
                     $name.contacts(center, reach, at, visit);
+                })+
+            }
+            fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+                #[allow(non_snake_case)]
+                let ($($name,)+) = self;
+                let bounds = Aabb { min: center - reach, max: center + reach };
+                $(if $name.may_touch(&bounds) {
+                    $name.contacts_of(faces, center, reach, at, visit);
                 })+
             }
             fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {

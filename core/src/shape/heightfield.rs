@@ -385,6 +385,12 @@ impl Collider for HeightField<'_> {
             self.near(&near, |face, triangle| triangle.contact(center, reach, face).iter().for_each(&mut *visit));
         }
     }
+
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
+        let there = faces.iter().filter(|&&face| (face as usize) < self.count());
+        let contact = |&face: &u32| self.triangle(face as usize).contact(center, reach, face);
+        there.filter_map(contact).for_each(|contact| visit(&contact));
+    }
 }
 
 impl Mapped for HeightField<'_> {

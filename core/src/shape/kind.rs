@@ -101,6 +101,9 @@ impl<M: Collider> Collider for Shape<M> {
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         each!(self, s => s.contacts(center, reach, at, visit));
     }
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        each!(self, s => s.contacts_of(faces, center, reach, at, visit));
+    }
 }
 
 impl<M: Mapped> Mapped for Shape<M> {

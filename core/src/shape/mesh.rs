@@ -263,6 +263,11 @@ impl Collider for Mesh<'_> {
         });
     }
 
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, _: Time, visit: &mut dyn FnMut(&Contact)) {
+        let contact = |&face: &u32| self.face(face as usize)?.contact(center, reach, face);
+        faces.iter().filter_map(contact).for_each(|contact| visit(&contact));
+    }
+
     fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
@@ -328,6 +333,9 @@ macro_rules! through_view {
             }
             fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
                 self.view().contacts(center, reach, at, visit);
+            }
+            fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+                self.view().contacts_of(faces, center, reach, at, visit);
             }
             fn is_empty(&self) -> bool {
                 self.view().is_empty()

@@ -1,5 +1,6 @@
 //! Walls that move as a script says: mills, pistons, conveyors.
 
+use super::collider::contacts_among;
 use super::{Aabb, Affine, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Ride, Segment};
 use crate::math::{along, clamp, dot, high, largest, length, low, max, sqrt};
 use crate::motion::{EVERYWHERE, Frame, Motion, Script};
@@ -88,6 +89,25 @@ impl<C, M> Moving<C, M> {
     }
 }
 
+impl<C: Collider, M: Script> Moving<C, M> {
+    /// Visits the contacts of all faces, or of some.
+    fn visit(&self, faces: Option<&[u32]>, (center, reach): (Vec3, f32), at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let Some(motion) = &self.motion else {
+            return contacts_among(&self.collider, faces, (center, reach), at, visit);
+        };
+        if self.is_far(&Aabb { min: center - reach, max: center + reach }, [at; 2]) {
+            return;
+        }
+        let frame = motion.frame(at);
+        contacts_among(&self.collider, faces, (frame.local(center), reach), at, &mut |contact| {
+            let normal = frame.turn * contact.normal;
+            let point = center - normal * contact.distance;
+            let velocity = frame.turn * contact.velocity + frame.velocity_at(point);
+            visit(&Contact { point, normal, velocity, ..*contact });
+        });
+    }
+}
+
 /// A box that drifts on from where it is without end.
 fn onward(around: Aabb, drift: Vec3) -> Aabb {
     let Aabb { mut min, mut max } = around;
@@ -172,17 +192,11 @@ impl<C: Collider, M: Script> Collider for Moving<C, M> {
     }
 
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        let Some(motion) = &self.motion else { return self.collider.contacts(center, reach, at, visit) };
-        if self.is_far(&Aabb { min: center - reach, max: center + reach }, [at; 2]) {
-            return;
-        }
-        let frame = motion.frame(at);
-        self.collider.contacts(frame.local(center), reach, at, &mut |contact| {
-            let normal = frame.turn * contact.normal;
-            let point = center - normal * contact.distance;
-            let velocity = frame.turn * contact.velocity + frame.velocity_at(point);
-            visit(&Contact { point, normal, velocity, ..*contact });
-        });
+        self.visit(None, (center, reach), at, visit);
+    }
+
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        self.visit(Some(faces), (center, reach), at, visit);
     }
 
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {

@@ -1,5 +1,6 @@
 //! A shape put elsewhere: turned, scaled, sheared and moved.
 
+use super::collider::contacts_among;
 use super::{Aabb, Affine, Collider, Contact, Facing, Hit, Hulls, Mapped, Marks, Segment, Surface, earlier};
 use crate::math::{high, largest, length, unit};
 use crate::time::Time;
@@ -50,6 +51,34 @@ impl<C: Surface> Placed<C> {
     }
 }
 
+impl<C: Mapped> Placed<C> {
+    /// Visits the contacts of all faces of a collider, or of some; under a map that does not keep shapes, those of its image.
+    fn visit(&self, faces: Option<&[u32]>, (center, reach): (Vec3, f32), at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let Some((to_world, to_local)) = &self.maps else {
+            let mut made = |contact: &Contact| visit(&Contact { material: self.material, ..*contact });
+            return contacts_among(&self.collider, faces, (center, reach), at, &mut made);
+        };
+        let Some([scale, _]) = self.scale else {
+            let near = Aabb { min: center - reach, max: center + reach }.with_slack();
+            return self.collider.image(to_world, &near, &mut |face, image| {
+                if faces.is_none_or(|faces| faces.contains(&face)) {
+                    let made = &mut |contact: &Contact| visit(&Contact { material: self.material, face, ..*contact });
+                    image.contacts(center, reach, at, made);
+                }
+            });
+        };
+        let around = (to_local.point(center), reach / scale);
+        contacts_among(&self.collider, faces, around, at, &mut |contact| {
+            let normal = unit(to_local.linear.transpose() * contact.normal);
+            let distance = contact.distance * scale;
+            let point = center - normal * distance;
+            let velocity = carried(to_world, contact.velocity);
+            let slack = contact.slack * scale + Segment::new(center, center).slack(largest(to_world.shift));
+            visit(&Contact { point, normal, distance, slack, velocity, material: self.material, face: contact.face });
+        });
+    }
+}
+
 impl<C: Mapped> Collider for Placed<C> {
     fn moves(&self) -> bool {
         self.collider.moves()
@@ -67,27 +96,12 @@ impl<C: Mapped> Collider for Placed<C> {
         self.hit_in(maps, segment, segment.radius / scale, segment.radius * error)
     }
 
-    /// Visits the contacts of a collider; under a map that does not keep shapes, those of its image.
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        let Some((to_world, to_local)) = &self.maps else {
-            let mut made = |contact: &Contact| visit(&Contact { material: self.material, ..*contact });
-            return self.collider.contacts(center, reach, at, &mut made);
-        };
-        let Some([scale, _]) = self.scale else {
-            let near = Aabb { min: center - reach, max: center + reach }.with_slack();
-            return self.collider.image(to_world, &near, &mut |face, image| {
-                let made = &mut |contact: &Contact| visit(&Contact { material: self.material, face, ..*contact });
-                image.contacts(center, reach, at, made);
-            });
-        };
-        self.collider.contacts(to_local.point(center), reach / scale, at, &mut |contact| {
-            let normal = unit(to_local.linear.transpose() * contact.normal);
-            let distance = contact.distance * scale;
-            let point = center - normal * distance;
-            let velocity = carried(to_world, contact.velocity);
-            let slack = contact.slack * scale + Segment::new(center, center).slack(largest(to_world.shift));
-            visit(&Contact { point, normal, distance, slack, velocity, material: self.material, face: contact.face });
-        });
+        self.visit(None, (center, reach), at, visit);
+    }
+
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        self.visit(Some(faces), (center, reach), at, visit);
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {

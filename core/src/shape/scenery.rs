@@ -237,6 +237,11 @@ impl<C: Collider> Collider for Nearby<'_, C> {
         self.near(&bounds, |thing| thing.contacts(center, reach, at, visit));
     }
 
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        let bounds = Aabb { min: center - reach, max: center + reach };
+        self.near(&bounds, |thing| thing.contacts_of(faces, center, reach, at, visit));
+    }
+
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
         self.of.things.carry(point, radius, during)
     }
@@ -308,6 +313,10 @@ impl<C: Collider> Collider for Scenery<C> {
 
     fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
         self.anywhere().contacts(center, reach, at, visit);
+    }
+
+    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+        self.anywhere().contacts_of(faces, center, reach, at, visit);
     }
 
     fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {

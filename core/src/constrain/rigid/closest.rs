@@ -119,12 +119,12 @@ impl Over<'_> {
         let mut nearest = None::<(f32, Contact)>;
         // No farther than the other place is, but for rounding.
         let reach = length(at - point) + self.form.small(self.body);
-        self.colliders.contacts(at, reach, self.at, &mut |contact| {
+        self.colliders.contacts_of(self.faces, at, reach, self.at, &mut |contact| {
             let far = match self.faces {
                 [_, _, ..] => contact.distance,
                 _ => min(length(contact.point - point), length(contact.point - foot)),
             };
-            let is_nearer = self.faces.contains(&contact.face) && nearest.is_none_or(|(least, _)| far < least);
+            let is_nearer = nearest.is_none_or(|(least, _)| far < least);
             if is_nearer && dot(contact.normal, normal) > OTHER_SIDE {
                 nearest = Some((far, *contact));
             }

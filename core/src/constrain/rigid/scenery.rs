@@ -261,7 +261,9 @@ impl Visit<'_> {
             let Some(Near { contact, on, depth, turned }) = over.closest(contact, self.reach) else { continue };
             let normal = if turned { self.face(on, contact.normal) } else { contact.normal };
             let out = body.rotation.transpose() * -normal;
-            if !skin::shows(self.forms, body, (self.number, self.piece), [on, out]) || turned && self.is_seam(bodies, &contact) {
+            if !skin::shows(self.forms, body, (self.number, self.piece), [on, out])
+                || turned && self.is_seam(bodies, &contact)
+            {
                 continue;
             }
             if let Some(normal) = self.support(&contact, on, (normal, turned)) {
@@ -292,10 +294,15 @@ impl Visit<'_> {
     /// at all, as where triangles of a floor end on each other, or in a valley.
     fn is_seam(&self, bodies: &Bodies<'_>, contact: &Contact) -> bool {
         let (away, mut is_seam) = (self.body.small(), false);
-        bodies.colliders.contacts(contact.point + contact.normal * away, away, bodies.substep.during[0], &mut |other| {
-            let aside = length(other.point - contact.point);
-            is_seam |= aside < WITHIN * away && dot(other.normal, contact.normal) < ONE_FACE;
-        });
+        bodies.colliders.contacts(
+            contact.point + contact.normal * away,
+            away,
+            bodies.substep.during[0],
+            &mut |other| {
+                let aside = length(other.point - contact.point);
+                is_seam |= aside < WITHIN * away && dot(other.normal, contact.normal) < ONE_FACE;
+            },
+        );
         is_seam
     }
 
