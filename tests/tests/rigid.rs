@@ -3,9 +3,10 @@
 use pointmass::constrain::{RigidBodies, RigidBox};
 use pointmass::force::Friction;
 use pointmass::index::Structure;
+use pointmass::rays;
 use pointmass::reap::Chance;
 use pointmass::scene::{Model, SceneFile};
-use pointmass::shape::Plane;
+use pointmass::shape::{Collider, MeshBuf, Plane};
 use pointmass::{ContactMaterial, Gravity, Heap, Measures, Method, Particle, Scene, ShapeMatching, System, Time, Vec3};
 use pointmass_tests::{Random, chi_squared, f64s, gap, methods, run, started};
 
@@ -366,9 +367,39 @@ fn dice_are_fair_in_the_long_run() {
     }
 }
 
+/// The ground as triangles of unlike shapes, with cells about as wide as this \[m\].
+fn tiled(seed: u64, cell: f32) -> MeshBuf {
+    const HALF: f32 = 3.0;
+    let (mut random, cells) = (Random::new(seed), (2.0 * HALF / cell) as u32);
+    let mut at = |i: u32| (i as f32 + random.between(-0.3, 0.3)) * cell - HALF;
+    let mut vertices = Vec::new();
+    for i in 0..=cells {
+        vertices.extend((0..=cells).map(|j| Vec3::new(at(i), 0.0, at(j))));
+    }
+    let number = |i: u32, j: u32| i * (cells + 1) + j;
+    let pair = |(i, j): (u32, u32)| {
+        let [a, b, c, d] = [number(i, j), number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)];
+        if (i + j).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+    };
+    let triangles = (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))).flat_map(pair).collect();
+    MeshBuf::new(vertices, triangles).expect("the ground is a mesh").indexed(rays::Structure::Bvh)
+}
+
 /// Dice that meet in the air and on the ground: all at rest within five seconds, on a face or leaning on others, none in another.
 #[test]
 fn thrown_dice_come_to_rest() {
+    come_to_rest(&GROUND, 0.0);
+}
+
+/// The same on triangles that are larger and smaller than they.
+#[test]
+fn thrown_dice_come_to_rest_on_triangles() {
+    for (seed, cell) in [(1, 0.5), (2, 0.13), (3, 0.05)] {
+        come_to_rest(&tiled(seed, cell), cell);
+    }
+}
+
+fn come_to_rest(ground: &dyn Collider, cell: f32) {
     let cases = [
         (1, Method::Rk4, 20),
         (2, Method::Verlet, 10),
@@ -379,7 +410,7 @@ fn thrown_dice_come_to_rest() {
         (7, Method::Symplectic, 3),
     ];
     for (seed, method, substeps) in cases {
-        let case = format!("{method}, {substeps} sub-steps");
+        let case = format!("{method}, {substeps} sub-steps, cells of {cell} m");
         let (mut start, boxes) = dice(seed, 27, 0.16, EVEN, 0.0);
         let middle = Vec3::new(0.4, 0.5, 0.4);
         for particle in &mut start {
@@ -387,13 +418,15 @@ fn thrown_dice_come_to_rest() {
             particle.velocity += Vec3::new(inward.x, 0.0, inward.z) * 1.5;
         }
         let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
-        let parts = Scene { start: &start, forces: &DOWN, colliders: &GROUND, materials: &materials, ..Scene::EMPTY };
+        let parts = Scene { start: &start, forces: &DOWN, colliders: ground, materials: &materials, ..Scene::EMPTY };
         let scene = Scene { constraints: &bodies, substeps, integrator: method.integrator(), ..parts };
         let mut system = started(&scene, start.len(), 0);
         let (risen, fastest) = watch(&mut system, &scene, 300);
         assert!(risen < 1e-5, "{case}: energy grew by {risen}");
         assert!(fastest < 1e-3, "{case}: {fastest} m/s");
-        assert!(system.totals().contacts > 100 && system.totals().caps.contacts == 0, "{:?}", system.totals());
+        // On triangles that are smaller than dice there may be more places than a body has room for.
+        let is_full = system.totals().caps.contacts > 0 && cell == 0.0;
+        assert!(system.totals().contacts > 100 && !is_full, "{case}: {:?}", system.totals());
         let x = system.particles().position;
         for (i, a) in bodies.boxes.iter().enumerate() {
             for b in &bodies.boxes[..i] {
