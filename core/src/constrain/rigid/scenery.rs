@@ -13,7 +13,7 @@ use crate::shape::{Aabb, Contact, Facing, Segment, Surface, Triangle};
 use glam::{Mat3, Vec3};
 
 /// Parts of the scenery that a piece may touch elsewhere than by its corners, at the most.
-const PARTS: usize = 8;
+const PARTS: usize = 16;
 /// Triangles of a mesh that are one of them, at the most.
 const FACES: usize = 12;
 /// The cosine of the angle within which two faces are one.
@@ -231,49 +231,60 @@ impl Visit<'_> {
 
     /// Looks for the places of the scenery that come nearest to the body's edges and faces.
     fn scenery(&mut self, bodies: &mut Bodies<'_>) {
-        let (body, at) = (self.body, bodies.substep.during[0]);
+        for part in &self.parts(bodies) {
+            self.part(bodies, part);
+        }
+    }
+
+    /// The parts of the scenery that the piece may touch elsewhere than by its corners: of more than there is room for the nearest.
+    fn parts(&self, bodies: &mut Bodies<'_>) -> heapless::Vec<Part, PARTS> {
+        let (body, colliders, at) = (self.body, bodies.colliders, bodies.substep.during[0]);
         let (middle, half) = (self.form.middle(body), self.form.half(body));
-        let over = Over { form: &self.form, body, colliders: bodies.colliders, at, faces: &[] };
-        let (mut near, mut left_out) = (heapless::Vec::<Part, PARTS>::new(), 0);
-        bodies.colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
+        let over = Over { form: &self.form, body, colliders, at, faces: &[] };
+        let (mut parts, mut left_out) = (heapless::Vec::<Part, PARTS>::new(), 0);
+        colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
             if over.gap(contact) > self.reach || self.is_stood_on(contact) {
                 return;
             }
-            if let Some(part) = near.iter_mut().find(|part| part.is_at(contact, 0.1 * self.level())) {
+            if let Some(part) = parts.iter_mut().find(|part| part.is_at(contact, 0.1 * self.level())) {
                 left_out += u64::from(part.faces.push(contact.face).is_err());
                 return;
             }
             let (.., out) = self.form.nearest(body, body.place(contact.point));
+            // Of those within it the nearest to its middle come first.
             let far = out + 0.1 * contact.distance;
             let faces = heapless::Vec::from_iter([contact.face]);
-            if let Err(one) = near.push(Part { far, contact: *contact, faces }) {
+            if let Err(one) = parts.push(Part { far, contact: *contact, faces }) {
                 left_out += 1;
-                // Of more than there is room for the nearest count.
-                let farthest = near.iter_mut().reduce(|most, other| if other.far > most.far { other } else { most });
+                let farthest = parts.iter_mut().reduce(|most, other| if other.far > most.far { other } else { most });
                 if let Some(most) = farthest.filter(|most| one.far < most.far) {
                     *most = one;
                 }
             }
         });
         bodies.report.caps.contacts += left_out;
-        for &Part { contact, ref faces, .. } in &near {
-            let over = Over { form: &self.form, body, colliders: bodies.colliders, at, faces };
-            let Some(Near { contact, on, depth, turned }) = over.closest(contact, self.reach) else { continue };
-            let normal = if turned { self.face(on, contact.normal) } else { contact.normal };
-            let out = body.rotation.transpose() * -normal;
-            if !skin::shows(self.forms, body, (self.number, self.piece), [on, out])
-                || turned && self.is_seam(bodies, &contact)
-            {
-                continue;
-            }
-            if let Some(normal) = self.support(&contact, on, (normal, turned)) {
-                self.is_on_round |= turned;
-                self.put(bodies, &Contact { normal, ..contact }, on);
-                let facing = self.form.facing(out);
-                if dot(facing, out) > ALIKE {
-                    self.rims(bodies, body.rotation * -facing, [on, facing], depth);
-                }
-            }
+        parts
+    }
+
+    /// Looks for the place of one of them that comes nearest to the piece.
+    fn part(&mut self, bodies: &mut Bodies<'_>, part: &Part) {
+        let (body, at) = (self.body, bodies.substep.during[0]);
+        let over = Over { form: &self.form, body, colliders: bodies.colliders, at, faces: &part.faces };
+        let Some(near) = over.closest(part.contact, self.reach) else { return };
+        let Near { contact, on, depth, turned } = near;
+        let normal = if turned { self.face(on, contact.normal) } else { contact.normal };
+        let out = body.rotation.transpose() * -normal;
+        if !skin::shows(self.forms, body, (self.number, self.piece), [on, out])
+            || turned && self.is_seam(bodies, &contact)
+        {
+            return;
+        }
+        let Some(normal) = self.support(&contact, on, (normal, turned)) else { return };
+        self.is_on_round |= turned;
+        self.put(bodies, &Contact { normal, ..contact }, on);
+        let facing = self.form.facing(out);
+        if dot(facing, out) > ALIKE {
+            self.rims(bodies, body.rotation * -facing, [on, facing], depth);
         }
     }
 
