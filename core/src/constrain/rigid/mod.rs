@@ -87,7 +87,7 @@ use span::Span;
 ///
 /// What is fast is met ahead of time, but a body that turns by more than some 20° in a sub-step may be met too late. There is room for twelve
 /// touching pairs a body, six more of pieces for each piece beyond its first, two for each ball and three directions of the scenery. A further one
-/// goes with that which is within 26° of it, and else the deepest three count, as do the eight nearest parts of the scenery for each piece; what finds no
+/// goes with that which is within 26° of it, and else the deepest three count, as do the sixteen nearest parts of the scenery for each piece; what finds no
 /// room is counted (`caps.contacts`).
 ///
 /// [`Observer`](crate::Observer)s are told of each blow ([`touched`](crate::Observer::touched)): for a body its first living particle stands,
