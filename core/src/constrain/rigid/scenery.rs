@@ -101,8 +101,8 @@ pub(super) fn meet(
         }
         (visit.piece, visit.form) = (piece, form);
         (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
-        // Corners do all that one flat face does.
-        if !matches!(bodies.colliders.facing(&near), Facing::Face(_)) {
+        // Corners, if there are any, do all that one flat face does.
+        if form.corners() == 0 || !matches!(bodies.colliders.facing(&near), Facing::Face(_)) {
             visit.scenery(bodies);
         }
     }
