@@ -373,7 +373,9 @@ impl Visit<'_> {
             });
             bodies.report.caps.contacts += left_out;
             for (contact, on) in &rims {
-                self.put(bodies, contact, *on);
+                if !self.is_seam(bodies, contact) {
+                    self.put(bodies, contact, *on);
+                }
             }
         }
     }
