@@ -9,7 +9,7 @@ use super::manifold::{DIRECTIONS, Manifold, POINTS, Point};
 use super::skin;
 use crate::material::on_surface;
 use crate::math::{dot, length, max, min};
-use crate::shape::{Aabb, Contact, Facing, Segment, Surface, Triangle};
+use crate::shape::{Aabb, Contact, Segment, Surface, Triangle};
 use glam::{Mat3, Vec3};
 
 /// Parts of the scenery that a piece may touch elsewhere than by its corners, at the most.
@@ -101,10 +101,7 @@ pub(super) fn meet(
         }
         (visit.piece, visit.form) = (piece, form);
         (0..form.corners()).for_each(|corner| visit.corner(bodies, form.corner(body, corner)));
-        // Corners, if there are any, do all that one flat face does.
-        if form.corners() == 0 || !matches!(bodies.colliders.facing(&near), Facing::Face(_)) {
-            visit.scenery(bodies);
-        }
+        visit.scenery(bodies);
     }
     // Slots are taken one after the other.
     let met = visit.slots.iter().filter(|slot| slot.count > 0).count() as u32;
