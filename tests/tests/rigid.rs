@@ -6,9 +6,9 @@ use pointmass::index::Structure;
 use pointmass::rays;
 use pointmass::reap::Chance;
 use pointmass::scene::{Model, SceneFile};
-use pointmass::shape::{Collider, MeshBuf, Plane};
+use pointmass::shape::{Collider, Cuboid, MeshBuf, Plane};
 use pointmass::{ContactMaterial, Gravity, Heap, Measures, Method, Particle, Scene, ShapeMatching, System, Time, Vec3};
-use pointmass_tests::{Random, chi_squared, f64s, gap, methods, run, started};
+use pointmass_tests::{Random, chi_squared, f64s, gap, methods, often, run, started};
 
 const G: f64 = 9.81;
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
@@ -572,4 +572,120 @@ fn files_name_boxes_and_say_what_is_wrong_with_them() {
         let error = file(boxes).expect_err(boxes).to_string();
         assert!(error.contains(what), "{boxes}: {error}");
     }
+}
+
+/// Of more pairs than there is room for the same are left out, whatever index finds them.
+#[test]
+fn who_finds_no_room_hangs_on_no_index() {
+    let mut random = Random::new(3);
+    let mut start = Vec::new();
+    let boxes: Vec<_> = (0..60)
+        .map(|_| {
+            let first = start.len() as u32;
+            let middle = random.vector(0.05);
+            start.extend((0..8).map(|i| {
+                let sign = |bit: u32| if i >> bit & 1 == 1 { 0.05 } else { -0.05 };
+                Particle { position: middle + Vec3::new(sign(0), sign(1), sign(2)), mass: 0.1, ..Particle::REST }
+            }));
+            RigidBox::new(Vec3::splat(0.1), Vec3::ZERO, first)
+        })
+        .collect();
+    let bodies = RigidBodies::boxes(boxes);
+    let run = |structure: Structure| {
+        let scene = Scene { start: &start, constraints: &bodies, substeps: 4, index: &structure, ..Scene::EMPTY };
+        let mut system = started(&scene, start.len(), 0);
+        run(&mut system, &scene, 1.0 / 60.0, 4);
+        (system.hash(), system.totals().caps.contacts)
+    };
+    let want = run(Structure::Brute);
+    assert!(want.1 > 0);
+    for structure in Structure::ALL {
+        assert_eq!(run(*structure), want, "{structure}");
+    }
+}
+
+/// What flies free for a minute keeps its energy and its angular momentum, about its middle axis too, where it flips again and again.
+#[test]
+fn a_box_that_flies_free_for_a_minute_keeps_energy_and_angular_momentum() {
+    let half = 0.5 * Vec3::new(0.1, 0.2, 0.3) / 3f32.sqrt();
+    for (i, spin) in [Vec3::Y * 6.0, Vec3::new(0.1, 0.05, 5.0), Vec3::new(3.0, -4.0, 2.0)].into_iter().enumerate() {
+        for (k, substeps) in [1u32, 4, 20].into_iter().enumerate() {
+            // Those of a corner: the axis of the middle moment of inertia is the second.
+            let spin = if i == 0 { spin + Vec3::new(0.02, 0.0, 0.01) } else { spin };
+            let corner = |i: u32| {
+                let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+                let position = half * Vec3::new(sign(0), sign(1), sign(2));
+                Particle { position, velocity: spin.cross(position), mass: 0.25, ..Particle::REST }
+            };
+            let start: Vec<_> = (0..8).map(corner).collect();
+            let bodies = RigidBodies::boxes([RigidBox::new(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO, 0)]);
+            let method = Method::ALL[(2 * i + k) % Method::ALL.len()];
+            let parts = Scene { start: &start, constraints: &bodies, substeps, ..Scene::EMPTY };
+            let scene = Scene { integrator: method.integrator(), ..parts };
+            let mut system = started(&scene, 8, 0);
+            let begun = Measures::of(&system, &scene);
+            for frame in 1..=3600 {
+                system.step_to(&scene, Time::frame(frame, 60));
+                let now = Measures::of(&system, &scene);
+                let turned = gap(now.angular_momentum, begun.angular_momentum) / gap(begun.angular_momentum, [0.0; 3]);
+                let gained = now.energy.kinetic / begun.energy.kinetic - 1.0;
+                let what = format!("{spin}, {method} in {substeps}, frame {frame}");
+                assert!(turned < 1e-4 && gained.abs() < 1e-2, "{what}: {turned}, {gained}");
+            }
+        }
+    }
+}
+
+/// However few sub-steps there are, nobody falls through the ground, and nothing gets more energy than it has fallen for: in one sub-step the smallest fall by
+/// several times their size, and turn by a radian and more.
+#[test]
+fn the_smallest_of_dice_in_the_longest_steps_stay_above_the_ground() {
+    let mut random = Random::new(41);
+    let mut failures = vec![];
+    for round in 0..often(600) {
+        let side = [0.016f32, 0.002, 0.005, 0.05, 0.001][round % 5];
+        let (rate, substeps) = [(24, 1), (60, 1), (24, 2), (60, 3), (24, 3)][round / 5 % 5];
+        let method = Method::ALL[round % Method::ALL.len()];
+        let count = [1, 3, 12][round % 3];
+        let drop = random.between(1.0, 4.0) * side;
+        let (mut start, mut boxes) = (vec![], vec![]);
+        for number in 0..count {
+            let (axis, half) = (random.direction(), random.between(0.0, 1.5));
+            let [x, y, z] = (axis * half.sin()).to_array();
+            let middle = Vec3::new(random.between(-1.0, 1.0) * side, drop + 2.0 * side * number as f32, 0.0);
+            let of = RigidBox {
+                turn: [x, y, z, half.cos()],
+                ..RigidBox::new(Vec3::splat(side), middle, start.len() as u32)
+            };
+            let whole =
+                Particle { position: middle, velocity: random.vector(0.5) * side, mass: 0.01, ..Particle::REST };
+            start.extend(thrown(&of, whole, random.vector(5.0)));
+            boxes.push(of);
+        }
+        let slab = Cuboid { min: Vec3::new(-9.0, -2.0, -9.0), max: Vec3::new(9.0, 0.0, 9.0) };
+        let grounds: [&dyn Collider; 2] = [&GROUND, &slab];
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
+        let parts = Scene { start: &start, forces: &DOWN, colliders: grounds[round % 2], ..Scene::EMPTY };
+        let integrator = method.integrator();
+        let scene = Scene { constraints: &bodies, materials: &materials, substeps, integrator, ..parts };
+        let mut system = started(&scene, start.len(), 0);
+        let begun = Measures::of(&system, &scene).energy.total();
+        let what = format!("{count} of {side} m, {rate}/s in {substeps}, {method}, {round}");
+        for frame in 1..=2 * u64::from(rate) {
+            system.step_to(&scene, Time::frame(frame, rate));
+            let energy = Measures::of(&system, &scene).energy;
+            let middles = system.particles().position.chunks(8).map(|x| x.iter().map(|x| x.y).sum::<f32>() / 8.0);
+            let lowest = middles.fold(f32::INFINITY, f32::min);
+            // Explicit Euler's method gains as things fall. What falls by several times its size in a sub-step may be thrown by what forces give in some.
+            let h = 1.0 / f64::from(rate) / f64::from(substeps);
+            let is_bounded = method != Method::Euler && G * h * h < 4.0 * f64::from(side);
+            let most = begun + start.len() as f64 * 0.01 / 8.0 * 0.5 * (G * h).powi(2);
+            if !((energy.total() <= most || !is_bounded) && lowest > 0.0) {
+                failures
+                    .push(format!("{what}, frame {frame}: {} of {begun} J, a middle at {lowest} m", energy.total()));
+                break;
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
 }

@@ -449,6 +449,11 @@ impl Body {
         }
     }
 
+    /// The least of its half sides \[m\].
+    pub(super) fn least(&self) -> f32 {
+        min(self.half.x, min(self.half.y, self.half.z))
+    }
+
     /// A length that is small beside its box \[m\].
     pub(super) fn small(&self) -> f32 {
         self.small_for(self.half)

@@ -185,12 +185,22 @@ impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
         let mut order = Order::of(all, &mut manifolds, memory);
         let struck = solver::keep_apart(all, &manifolds, &mut order, span);
         fly::go(all, span.h);
+        self.hold_back(bodies, all, span.h);
         solver::part(all, &mut manifolds, &mut order, (struck, span));
         sleep::feel(all, &pairs[..len], order.numbers, span);
         if bodies.substep.is_last() {
             sleep::settle(bodies, kept);
         }
         members::tell(bodies, kept, self.boxes.as_ref());
+    }
+
+    /// Stops at the scenery whose middle has gone through that. What consists of several pieces may have its middle in none of them.
+    fn hold_back(&self, bodies: &Bodies<'_>, all: &mut [Body], h: f32) {
+        for (body, of) in all[1..].iter_mut().zip(self.boxes.as_ref()) {
+            if body.goes() && of.pieces <= 1 {
+                scenery::hold_back(bodies, body, h);
+            }
+        }
     }
 
     /// Does something with each body, and the places of its particles.

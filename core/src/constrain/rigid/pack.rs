@@ -4,7 +4,7 @@ use super::body::Body;
 use super::fours::{fours, put};
 use super::manifold::{Manifold, Manifolds, POINTS, Point};
 use super::pose::Inverse;
-use crate::lanes::{ABREAST, Eight, LANES, Row, Vectors, load};
+use crate::lanes::{ABREAST, Eight, LANES, Row, Vectors, load, saved};
 use core::mem::offset_of;
 use glam::Vec3;
 
@@ -28,6 +28,27 @@ pub(super) struct Spots {
     /// The impulse that keeps them apart, and that of friction on the second along these directions \[N s\].
     pub(super) pressed: Row,
     pub(super) held: [Row; 2],
+}
+
+impl Spots {
+    /// Takes what impulses do at its point: uu, vv, nn, uv, un and vn along two directions across the normal, and that \[1/kg\].
+    #[inline(always)]
+    pub(super) fn weigh<F: Eight>(&mut self, [uu, vv, nn, uv, un, vn]: [F; 6]) {
+        self.rub = [saved(uu), saved(nn.all(2.0) * uv), saved(vv)];
+        self.answer = [saved(un), saved(vn)];
+        self.mass = saved(nn.all(1.0) / nn);
+    }
+
+    /// The same where a mask holds.
+    #[inline(always)]
+    pub(super) fn weigh_where<F: Eight>(&mut self, mask: F, yields: [F; 6]) {
+        let before = *self;
+        self.weigh(yields);
+        let rows = self.rub.iter_mut().chain(&mut self.answer).chain([&mut self.mass]);
+        for (row, old) in rows.zip(before.rub.iter().chain(&before.answer).chain([&before.mass])) {
+            *row = saved(mask.select(load(mask, row), load(mask, old)));
+        }
+    }
 }
 
 /// The same before passes and between them.

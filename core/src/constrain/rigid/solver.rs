@@ -7,14 +7,11 @@ use super::manifold::{Manifold, Manifolds};
 use super::moving::{self, Moving};
 use super::order::Order;
 use super::pass::Passes;
-use super::span::Span;
+use super::span::{FAR, Span};
 use super::stand::{Begin, HoldOn, Stand, Tell};
 use crate::lanes::run_abreast;
 use crate::math::{dot, max};
 use glam::Vec3;
-
-/// The square of an angle by which who turns in a sub-step has turned far.
-const FAR: f32 = 0.1;
 
 /// How fast two come together that may touch within a sub-step of `h` \[s\], driven as they were \[m/s\].
 pub(super) fn meeting(bodies: &[Body], manifold: &Manifold, h: f32) -> Option<f32> {

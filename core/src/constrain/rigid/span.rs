@@ -2,6 +2,9 @@
 
 use crate::math::max;
 
+/// The square of an angle by which who turns in a sub-step has turned far.
+pub(super) const FAR: f32 = 0.1;
+
 /// The number of sub-steps' worth of driving within which two that come together count as at rest on each other, at least: what rests comes with
 /// that of one, and in stacks with what rounding and their neighbours add to it.
 const CALM: f32 = 4.0;

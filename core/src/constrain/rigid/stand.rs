@@ -6,7 +6,7 @@ use super::moving::{Moves, Moving};
 use super::order::{Order, is_in_turn, is_scenery};
 use super::pack::{Kept, Pack, Places, surfaces};
 use super::pose::{Motion, Pose};
-use super::span::Span;
+use super::span::{FAR, Span};
 use crate::collide::RESTING;
 use crate::lanes::{Eight, Kernel, Vectors, load, mask_of, max, negated, not, saved};
 use bytemuck::Zeroable;
@@ -223,6 +223,17 @@ impl<F: Eight> Pair<F> {
         Kept { places: [Vectors::select(slides, moved, on), off], ..kept }
     }
 
+    /// What impulses at a point change the velocity there by, as [`yields`], of both.
+    #[inline(always)]
+    fn yielding(&self, arms: [Vectors<F>; 2], directions: [Vectors<F>; 3]) -> [F; 6] {
+        let zero = arms[0].0[0].all(0.0);
+        let [a, b] = [
+            yields(&self.poses[0].motion, self.gives[0], arms[0], directions),
+            yields(&self.poses[1].motion, self.gives[1], arms[1], directions),
+        ];
+        core::array::from_fn(|k| if self.on_scenery { zero + b[k] } else { zero + a[k] + b[k] })
+    }
+
     /// Finds what impulses at each point do to the speeds there; what has crept is taken back in so many sub-steps.
     #[inline(always)]
     fn weigh(
@@ -234,11 +245,7 @@ impl<F: Eight> Pair<F> {
         span: Span,
     ) {
         let like = stance.gap;
-        let [a, b] = [
-            yields(&self.poses[0].motion, self.gives[0], stance.arms[0], directions),
-            yields(&self.poses[1].motion, self.gives[1], stance.arms[1], directions),
-        ];
-        let sum = |k: usize| if self.on_scenery { like.all(0.0) + b[k] } else { like.all(0.0) + a[k] + b[k] };
+        let yields = self.yielding(stance.arms, directions);
         let back = like.all(RECOVERY / span.h);
         let [mut s, mut t] = [stance.crept.dot(directions[0]) * back, stance.crept.dot(directions[1]) * back];
         let moves = not(kept.surface.is_zero());
@@ -248,9 +255,7 @@ impl<F: Eight> Pair<F> {
         }
         let spots = &mut pack.spots[i];
         spots.arms = [stance.arms[0].saved(), stance.arms[1].saved()];
-        spots.rub = [saved(sum(0)), saved(like.all(2.0) * sum(3)), saved(sum(1))];
-        spots.answer = [saved(sum(4)), saved(sum(5))];
-        spots.mass = saved(like.all(1.0) / sum(2));
+        spots.weigh(yields);
         spots.lag = [saved(s), saved(t)];
         let places = &mut pack.places[i];
         places.places = [kept.places[0].saved(), kept.places[1].saved()];
@@ -293,6 +298,16 @@ impl<F: Eight> Pair<F> {
         is_blow
     }
 
+    /// Where one of both has turned far in the sub-step.
+    #[inline(always)]
+    fn turned_far(&self, span: Span) -> F {
+        let like = self.gives[0];
+        let most = like.all(FAR / (span.h * span.h));
+        let [a, b] = [0, 1].map(|k| self.poses[k].motion.omega);
+        let [a, b] = [a.dot(a).simd_gt(most) & self.gives[0], b.dot(b).simd_gt(most) & self.gives[1]];
+        if self.on_scenery { b } else { a | b }
+    }
+
     /// Follows the bodies' places when they have gone, and leaves out of how far apart they are, and of what has crept, the way that the scenery has
     /// gone; lets them slip as it moves from now on, and no longer back. Returns a bit for each that bounces.
     #[inline(always)]
@@ -303,6 +318,7 @@ impl<F: Eight> Pair<F> {
         pack.normal = normal.saved();
         pack.inverse = [self.poses[0].motion.inverse(), self.poses[1].motion.inverse()];
         let (zero, h, mut bounces) = (like.all(0.0), like.all(span.h), 0);
+        let far = self.turned_far(span);
         for i in pack.numbers() {
             let is_there = pack.is_there(like, i);
             let (spots, places) = (&mut pack.spots[i], &mut pack.places[i]);
@@ -325,6 +341,11 @@ impl<F: Eight> Pair<F> {
             let ahead = is_calm.select(negated(stance.gap) / h, like.all(f32::NEG_INFINITY));
             let wanted = touches.select(bounce, ahead);
             spots.arms = [stance.arms[0].saved(), stance.arms[1].saved()];
+            if far.any() {
+                // By what impulses did before they went, passes would drive them on and on.
+                let anew = self.yielding(stance.arms, [along[0], along[1], normal]);
+                spots.weigh_where(far, anew);
+            }
             (spots.wanted, spots.little) = (saved(wanted + lift), saved(little(wanted, driven)));
             places.aside = stance.crept.saved();
             bounces |= (is_there & wanted.simd_gt(zero)).to_bitmask();
