@@ -13,7 +13,7 @@ pub struct Report {
     pub born: u64,
     /// Particles removed, by cause.
     pub died: Died,
-    /// Particles that found no room.
+    /// Particles that found no room, and places of births where particles are few that were not tried any more in their step.
     pub refused: u64,
     /// Times that a particle met a collider; of contacts held by position one in each sub-step. What rests on one meets it in
     /// every step.
@@ -50,7 +50,7 @@ pub struct Effort {
     pub iterations: u64,
     /// The largest residual left, as a share of what the solution began with.
     pub residual: f32,
-    /// Steps that were taken although they err too much, and solutions cut off before they were good enough.
+    /// Steps that were taken although they err too much, solutions cut off before they were good enough, and sub-steps in which something would have bounced on.
     pub capped: u64,
 }
 
@@ -143,6 +143,9 @@ pub struct Caps {
     /// Triangles and folds of shells, triangles of limits of strain and edges of strands that have no extent where they begin, or no place, so that they
     /// do nothing: each once, as they begin. No part of the system's hash.
     pub degenerate: u64,
+    /// Births that should lie inside a shape, for which no place was found there, so that they lie on its surface: it is too thin, or open. No part of the
+    /// system's hash.
+    pub outside: u64,
     /// A step could not be made since the scene needs more emitters, springs or work columns than the system has.
     pub insufficient_memory: u64,
 }
@@ -268,6 +271,7 @@ impl Report {
             edges: 0,
             crushed: 0,
             degenerate: 0,
+            outside: 0,
             insufficient_memory: 0,
         },
     };
@@ -278,7 +282,7 @@ impl Report {
         // The hash takes in `other` where there are any.
         let Died { lifetime, sink, density, chance, other: _, nonfinite } = died;
         let Caps { bounces, chords, springs, contacts: near, insufficient_memory, .. } = caps;
-        let Caps { stalled: _, graphs: _, edges: _, crushed: _, degenerate: _, .. } = caps;
+        let Caps { stalled: _, graphs: _, edges: _, crushed: _, degenerate: _, outside: _, .. } = caps;
         [
             initial,
             born,

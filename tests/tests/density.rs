@@ -3,9 +3,9 @@
 use pointmass::emit::Burst;
 use pointmass::force::Curl;
 use pointmass::index::{InKd, IndexChoice, Structure};
-use pointmass::shape::{Cone, Cuboid, Cylinder, MeshBuf, Shape, Sphere, Surface};
+use pointmass::shape::{Capsule, Cone, Cuboid, Cylinder, Disc, MeshBuf, Shape, Sphere, Surface};
 use pointmass::{Chance, Dense, Emitter, Heap, Particle, Scene, Size, System, Time, Varied, Vec3, WhereSparse, Wind};
-use pointmass_tests::{CHI_99, Form, chi_squared_100, every, icosahedron, often, run, started, turn};
+use pointmass_tests::{CHI_99, Form, chi_squared_100, every, f64s, gap, icosahedron, often, run, started, turn};
 
 /// Places of birth inside a shape.
 fn inside(shape: impl Surface + Sync) -> Vec<[f64; 3]> {
@@ -198,4 +198,67 @@ fn reapers_in_a_list_choose_one_after_the_other() {
     let died = system.totals().died;
     assert!(died.chance > 20 && died.density > 100, "{died:?}");
     assert_eq!(died.total() as usize + system.len(), 500);
+}
+
+/// Uniform by volume in what is thin, and lies along no axis.
+#[test]
+fn births_inside_thin_capsules_are_even_by_volume() {
+    for (to, radius) in [(Vec3::ONE, 0.01), (Vec3::new(-3.0, 2.0, 0.5), 0.002), (Vec3::Y * 0.1, 0.5), (Vec3::ZERO, 1.0)]
+    {
+        let places = inside(Shape::<MeshBuf>::Capsule(Capsule { from: Vec3::ZERO, to, radius }));
+        let (axis, wide) = (f64s(to), f64::from(radius));
+        let long = gap(axis, [0.0; 3]);
+        // The volume below a height along the axis, of whole slices and of the ends.
+        let whole = wide * wide * long + 4.0 / 3.0 * wide.powi(3);
+        let end = |z: f64| wide * wide * z - z.powi(3) / 3.0;
+        let cell = |x: [f64; 3]| {
+            let z = if long > 0.0 { x.iter().zip(axis).map(|(x, a)| x * a).sum::<f64>() / long } else { x[1] };
+            let out = (x.iter().map(|x| x * x).sum::<f64>() - z * z).max(0.0);
+            let beyond = (-z).max(z - long).max(0.0).min(wide);
+            let below = if z < 0.0 {
+                end(wide) - end(beyond)
+            } else {
+                end(wide) + wide * wide * z.min(long) + end((z - long).max(0.0))
+            };
+            [(below / whole).clamp(0.0, 0.999_999), (out / (wide * wide - beyond * beyond)).clamp(0.0, 0.999_999)]
+        };
+        assert_even(places.into_iter().map(cell), &format!("capsule to {to}, {radius} m thick"));
+    }
+}
+
+/// What no place is found in has births on its surface, which are counted.
+#[test]
+fn births_for_which_there_is_no_place_inside_are_counted() {
+    let disc = Disc { center: Vec3::ZERO, normal: Vec3::Y, radius: 1.0 };
+    let burst = Some(Burst { count: 10, at: 0.0, every: 0.0 });
+    let emitter = Emitter { burst, inside: true, ..Emitter::new(disc, 0.0) };
+    let scene = Scene { emitters: &emitter, ..Scene::EMPTY };
+    let mut system = started(&scene, 10, 5);
+    let report = system.step(&scene, Time::from_ticks(1));
+    assert_eq!([report.born, report.caps.outside], [10; 2]);
+    assert!(system.particles().position.iter().all(|x| x.y == 0.0 && x.length() <= 1.0));
+}
+
+/// However many places are to be tried, a step ends; what is left is refused, and counted, whether a rate or bursts ask for them.
+#[test]
+fn places_to_be_tried_are_bounded_and_counted() {
+    let where_sparse = Some(WhereSparse { radius: 1.0, fewest: 1 });
+    let shape = || Form::Sphere(Sphere { center: Vec3::ZERO, radius: 0.1 });
+    let burst = |count, every| Some(Burst { count, at: 0.0, every });
+    let (step, room) = (Time::frame(1, 60), 50);
+    let seconds = f64::from(step.seconds());
+    for (rate, burst, owed) in [
+        (1e9, None, 1e9 * seconds),
+        (0.0, burst(u32::MAX, 0.0), f64::from(u32::MAX)),
+        (0.0, burst(4_000_000_000, 1e-6), 4e9 * 1e6 * seconds),
+        (0.0, burst(1, 2e-9), 1e9 * 0.5 * seconds),
+    ] {
+        let emitter = Emitter { where_sparse, burst, ..Emitter::new(shape(), rate) };
+        let scene = Scene { emitters: &emitter, ..Scene::EMPTY };
+        let mut system = started(&scene, room, 5);
+        let report = system.step(&scene, step);
+        assert_eq!(report.born, 1, "{rate} {burst:?}");
+        let tried = 16.0 * room as f64;
+        assert!((report.refused as f64 / (owed - tried) - 1.0).abs() < 0.2, "{rate} {burst:?}: {report:?}");
+    }
 }

@@ -125,6 +125,7 @@ impl Summary {
             edges,
             crushed,
             degenerate,
+            outside,
             insufficient_memory,
         } = *caps;
         let caps = [
@@ -137,6 +138,7 @@ impl Summary {
             ("solutions of shells that may have left edges too long", edges),
             ("pieces of shells that walls crush and that stayed where they were", crushed),
             ("triangles, folds and edges without extent, which do nothing", degenerate),
+            ("births on the surface of what they should lie in", outside),
             ("steps that did not fit", insufficient_memory),
         ];
         push_counts(&mut rows, "bounds met", &caps);

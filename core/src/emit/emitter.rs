@@ -39,8 +39,10 @@ pub struct WhereSparse {
     pub fewest: u32,
 }
 
-/// How often a place inside a shape is sought in its bounding box, before one on its surface has to do.
-const DRAWS: u32 = 32;
+/// How often a place inside a shape is sought in a box around it, before one on its surface has to do.
+const DRAWS: u32 = 1024;
+/// Places that are tried in a step where births come only where others are few, for each particle that there is room for.
+const TRIES: u64 = 16;
 
 /// A surface that gives birth to particles.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,10 +65,12 @@ const DRAWS: u32 = 32;
 pub struct Emitter<S, M = ()> {
     /// Where births lie, uniformly by area.
     pub shape: S,
-    /// Births lie inside the shape, if it is closed: uniformly by volume. Their directions lead away from its middle.
+    /// Births lie inside the shape, if it is closed: uniformly by volume. Their directions lead away from its middle. Where a thousand places in a box around it are
+    /// none in it, a birth lies on its surface, which [`Caps::outside`](crate::Caps::outside) counts.
     #[cfg_attr(feature = "serde", serde(default))]
     pub inside: bool,
-    /// Births come only where others are few: what the rate and the bursts bring are places that are tried.
+    /// Births come only where others are few: what the rate and the bursts bring are places that are tried, in a step no more than sixteen for each particle that
+    /// there is room for. The others are refused.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub where_sparse: Option<WhereSparse>,
     /// The group of a scene file whose transform applies to the shape, the direction and the velocity; a `Model`
@@ -164,8 +168,9 @@ impl<S: Surface + Sync, M: Script> Emit for Emitter<S, M> {
         }
         if first < last {
             let aim = self.spread.aim();
-            let ahead = self.where_sparse.is_none();
-            births.bring(number, self.rate, ahead, [first, last], |births, at| self.bear(births, number, at, aim));
+            let (ahead, mut tries) = (self.where_sparse.is_none(), self.tries(births));
+            let bear = |births: &mut Births<'_>, at| self.bear(births, (number, &mut tries), at, aim);
+            births.bring(number, self.rate, ahead, [first, last], bear);
         }
     }
 }
@@ -231,7 +236,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         }
         // The first burst that is not before `from`, if there is more than one.
         let (_, past) = divide(u128::from(from.ticks().saturating_sub(first)), every.max(1));
-        let (mut ticks, aim) = (first, self.spread.aim());
+        let (mut ticks, aim, mut tries) = (first, self.spread.aim(), self.tries(births));
         if first < from.ticks() && every > 0 {
             ticks = if past == 0 { from.ticks() } else { from.ticks().saturating_add(every - past) };
         }
@@ -246,7 +251,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
                     births.refuse(number, u64::from(burst.count - given));
                     break;
                 }
-                fits = self.bear(births, number, at, aim);
+                fits = self.bear(births, (number, &mut tries), at, aim);
             }
             if every == 0 {
                 return;
@@ -261,16 +266,31 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         }
     }
 
+    /// How many places may be tried in a step.
+    fn tries(&self, births: &Births<'_>) -> u64 {
+        if self.where_sparse.is_some() { TRIES.saturating_mul(births.capacity() as u64) } else { u64::MAX }
+    }
+
     /// One birth, if it comes to one. False if it was refused: so will those be that are like it.
-    fn bear(&self, births: &mut Births<'_>, number: usize, at: Time, aim: Aim) -> bool {
-        let Some(WhereSparse { radius, fewest }) = self.where_sparse else {
-            return births.give_drawn(number, at, |drawn| self.newborn(drawn, at, aim)).is_ok();
+    fn bear(&self, births: &mut Births<'_>, (number, tries): (usize, &mut u64), at: Time, aim: Aim) -> bool {
+        let mut is_outside = false;
+        let is_given = match self.where_sparse {
+            None => births.give_drawn(number, at, |drawn| self.newborn(drawn, at, aim, &mut is_outside)).is_ok(),
+            Some(_) if *tries == 0 => {
+                births.refuse(number, 1);
+                false
+            }
+            Some(WhereSparse { radius, fewest }) => {
+                *tries -= 1;
+                births.offer(number, at, |stream, births| {
+                    let newborn = self.newborn((stream, stream.units_of(PLACES)), at, aim, &mut is_outside);
+                    (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
+                });
+                true
+            }
         };
-        births.offer(number, at, |stream, births| {
-            let newborn = self.newborn((stream, stream.units_of(PLACES)), at, aim);
-            (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
-        });
-        true
+        births.report.caps.outside += u64::from(is_outside);
+        is_given
     }
 
     /// A particle whose attributes are the least that a birth may have, for zero, or for one the greatest.
@@ -293,21 +313,23 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         }
     }
 
-    /// A place inside the shape: the first that falls there of several in its bounding box.
+    /// A place inside the shape: the first that falls there of several in a box around it.
     fn place_inside(&self, random: Stream) -> Option<Spot> {
-        let Aabb { min, max } = self.shape.bounds();
+        let [corner, x, y, z] = self.shape.around();
         let drawn = (0..DRAWS).map(|draw| {
             let ([u, v], [w, _]) = (random.units(8 + 2 * draw), random.units(9 + 2 * draw));
-            min + (max - min) * Vec3::new(u, v, w)
+            corner + x * u + y * v + z * w
         });
         let point = { drawn }.find(|&point| self.shape.is_inside(point))?;
+        let Aabb { min, max } = self.shape.bounds();
         Some(Spot { point, normal: unit(point - (min + max) * 0.5) })
     }
 
-    /// A newborn. Each property draws from a place of its own, so that a change of one leaves the others alone.
-    fn newborn(&self, (random, pairs): Drawn, at: Time, aim: Aim) -> Particle {
+    /// A newborn, and whether it lies outside although it should not. Each property draws from a place of its own, so that a change of one leaves the others alone.
+    fn newborn(&self, (random, pairs): Drawn, at: Time, aim: Aim, is_outside: &mut bool) -> Particle {
         let [[u, v], [w, p], [q, speed], [bounce, life]] = pairs;
         let inside = if self.inside { self.place_inside(random) } else { None };
+        *is_outside = self.inside && inside.is_none();
         let spot = inside.unwrap_or_else(|| self.shape.sample([u, v, w]));
         let axis = self.direction.map_or(spot.normal, unit);
         let (spot, axis, along_with) = self.carried(spot.point, axis, at);

@@ -150,6 +150,12 @@ impl Births<'_> {
         self.workspace.is_full()
     }
 
+    /// The number of particles that there is room for.
+    #[must_use]
+    pub fn capacity(&self) -> usize {
+        self.workspace.capacity()
+    }
+
     /// The number of particles that lie within `radius` \[m\] of a place: those of before this step where they were then, those born in it
     /// where they were born. Costs one query of the scene's index if the emitter's [`reach`](Emit::reach) is as much, and a look
     /// at each newborn.
@@ -219,7 +225,7 @@ impl Births<'_> {
         rate: f32,
         ahead: bool,
         [from, to]: [Time; 2],
-        bear: impl Fn(&mut Self, Time) -> bool,
+        mut bear: impl FnMut(&mut Self, Time) -> bool,
     ) {
         let mut due = self.due(number, rate, from, to);
         while !self.is_full() {

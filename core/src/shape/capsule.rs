@@ -76,6 +76,14 @@ impl Surface for Capsule {
         Aabb { min: low(self.from, self.to) - self.radius, max: high(self.from, self.to) + self.radius }
     }
 
+    fn around(&self) -> [Vec3; 4] {
+        let along = self.direction();
+        let (right, up) = frame(along);
+        let wide = 2.0 * self.radius;
+        let corner = self.from - (along + right + up) * self.radius;
+        [corner, self.axis() + along * wide, right * wide, up * wide]
+    }
+
     fn is_inside(&self, point: Vec3) -> bool {
         self.contains(point)
     }

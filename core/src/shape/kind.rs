@@ -73,6 +73,9 @@ impl<M: Surface> Surface for Shape<M> {
     fn bounds(&self) -> Aabb {
         each!(self, s => s.bounds())
     }
+    fn around(&self) -> [Vec3; 4] {
+        each!(self, s => s.around())
+    }
     fn is_inside(&self, point: Vec3) -> bool {
         each!(self, s => s.is_inside(point))
     }

@@ -17,6 +17,14 @@ pub trait Surface {
     /// The smallest axis-aligned box around it.
     fn bounds(&self) -> Aabb;
 
+    /// A corner of a box around it, and the three sides of that from there, as small as they can easily be, in whatever directions. Places in it are sought
+    /// there. By default that of its bounds.
+    fn around(&self) -> [Vec3; 4] {
+        let Aabb { min, max } = self.bounds();
+        let sides = max - min;
+        [min, Vec3::X * sides.x, Vec3::Y * sides.y, Vec3::Z * sides.z]
+    }
+
     /// Tells whether a point lies inside the space that it encloses; open surfaces enclose nothing.
     fn is_inside(&self, point: Vec3) -> bool {
         let _ = point;
