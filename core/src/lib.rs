@@ -29,6 +29,7 @@ mod hash;
 pub mod index;
 pub mod integrate;
 mod lanes;
+mod least;
 #[cfg(feature = "std")]
 mod ledger;
 pub mod material;

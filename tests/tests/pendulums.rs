@@ -340,3 +340,37 @@ fn ropes_between_hooks_hang_in_catenaries() {
         }
     }
 }
+
+/// A rope of one link swings as a rod does: by methods of second order on it gains nothing, however far it swings and however long its sub-steps are, and loses little
+/// in short ones.
+#[test]
+fn a_rope_of_one_link_keeps_its_energy() {
+    let mut failures = vec![];
+    let second =
+        Method::ALL.iter().filter(|method| !matches!(method, Method::Euler | Method::Symplectic | Method::Implicit));
+    for (i, method) in second.enumerate() {
+        for (k, (rate, substeps)) in [(60, 1), (24, 1), (60, 3), (144, 1), (60, 7), (24, 7)].into_iter().enumerate() {
+            let length = [0.1f32, 0.3, 1.0][(i + k) % 3];
+            let angle = [0.5f32, 1.57, 2.1][(i + k / 2) % 3];
+            let bob = Vec3::new(angle.sin(), -angle.cos(), 0.0) * length;
+            let start = [Particle { fixed: true, ..Particle::REST }, Particle { position: bob, ..Particle::REST }];
+            let rope = Rope::rigid([0u32, 1], [length]);
+            let parts = Scene { start: &start, forces: &Gravity::EARTH, constraints: &rope, ..Scene::EMPTY };
+            let scene = Scene { substeps, integrator: method.integrator(), ..parts };
+            let mut system = started(&scene, 2, 0);
+            let swing = G * f64::from(length) * (1.0 - f64::from(angle.cos()));
+            let energy = |system: &_| Measures::of(system, &scene).energy.total();
+            let begun = energy(&system);
+            let mut most = f64::NEG_INFINITY;
+            for frame in 1..=20 * u64::from(rate) {
+                system.step_to(&scene, Time::frame(frame, rate));
+                most = most.max(energy(&system));
+            }
+            let [gained, kept] = [most, energy(&system)].map(|energy| (energy - begun) / swing);
+            if !(gained < 5e-3 && (kept > -0.1 || rate * substeps < 60)) {
+                failures.push(format!("{method}, {rate}/s in {substeps}, {length} m, {angle}: {gained:.4} {kept:.4}"));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{} {failures:#?}", failures.len());
+}

@@ -127,6 +127,8 @@ impl Line {
 
 /// The cosine of how far a link may turn in a sub-step to act along its first direction: by 60°.
 const COSINE: f32 = 0.5;
+/// How far the length of a direction may be off one for it to be told from rounding.
+const ASKEW: f32 = 0.01;
 /// The share of a speed within rounding that is believed.
 const CAUTION: f32 = 0.125;
 
@@ -199,7 +201,8 @@ impl Distance {
             line.part(bodies, -pull, line.first, left);
             // Velocities follow the way that it has made in all; what takes their speed at the end acts along the direction that it has then.
             let last = (line.apart - line.first * way) / (self.length + soft * way);
-            let along = if last.is_finite() { last } else { line.normal };
+            // That of what is much shorter than rounding of where its ends are tells nothing.
+            let along = if (length(last) - 1.0).abs() < ASKEW { last } else { line.normal };
             line.drive(bodies, line.first * ((gone - pull) / h) - along * (gone / h));
             return Some(Gone { by: gone, along });
         }

@@ -182,3 +182,32 @@ fn by_position_what_curves_neither_gives_nor_takes() {
         }
     }
 }
+
+/// A row of balls that touch hands a blow on from one end to the other in a sub-step, however long it is and whichever end is numbered first.
+#[test]
+fn a_blow_goes_through_a_row_of_any_length() {
+    let speed = 3.0;
+    for count in [3, 63, 66, 100, 300] {
+        for (is_numbered_back, substeps) in [(false, 1), (true, 1), (false, 12), (true, 12)] {
+            let ball = |i: usize| Particle {
+                position: Vec3::X * (0.2 * i as f32 * (1.0 - 1e-5)),
+                radius: 0.1,
+                elasticity: 1.0,
+                ..Particle::REST
+            };
+            let mut start: Vec<_> = (0..count).map(ball).collect();
+            start.push(Particle { position: Vec3::X * -0.21, velocity: Vec3::X * speed, ..ball(0) });
+            if is_numbered_back {
+                start.reverse();
+            }
+            let scene = Scene { start: &start, substeps, constraints: &Contacts::HARD, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 1);
+            run(&mut system, &scene, 1.0 / 60.0, 3);
+            let there = system.particles();
+            let left = energy(there.mass, there.position, there.velocity, 0.0) / (0.5 * f64::from(speed * speed));
+            let what = format!("{count} balls, {is_numbered_back}, {substeps} sub-steps");
+            assert!((left - 1.0).abs() < 5e-3, "{what}: {left} of its energy is left");
+            assert_eq!(system.totals().effort.capped, 0, "{what}");
+        }
+    }
+}

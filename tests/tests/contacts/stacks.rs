@@ -146,3 +146,27 @@ fn a_heap_falls_to_the_same_bits_whatever_the_index() {
         assert_eq!(hash(*structure), want, "{structure}");
     }
 }
+
+/// Of more contacts than there is room for the nearest count, and which these are hangs on no index.
+#[test]
+fn who_finds_no_room_is_the_same_whatever_the_index() {
+    let mut random = Random::new(29);
+    let mut crowd = |count: usize, wide: f32| -> Vec<Particle> {
+        let one = |_| Particle { elasticity: 0.2, ..ball(random.vector(wide), random.between(0.03, 0.05)) };
+        (0..count).map(one).collect()
+    };
+    for start in [crowd(200, 0.06), crowd(60, 0.02), crowd(400, 0.1)] {
+        let run = |structure: Structure| {
+            let (constraints, index) = (&Contacts::HARD, &structure);
+            let scene = Scene { start: &start, substeps: 4, constraints, index, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 1);
+            run(&mut system, &scene, 1.0 / 60.0, 8);
+            (system.hash(), system.totals().caps.contacts)
+        };
+        let want = run(Structure::Brute);
+        assert!(want.1 > 0, "{} balls find room", start.len());
+        for structure in Structure::ALL {
+            assert_eq!(run(*structure), want, "{structure}");
+        }
+    }
+}

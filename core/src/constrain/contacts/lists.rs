@@ -4,6 +4,7 @@ use super::super::bodies::are_bound;
 use super::super::{Bodies, Substep, Words};
 use super::touch::Touch;
 use crate::index::between;
+use crate::least;
 use crate::material::{of_two, on_surface};
 use crate::math::{length, max, min};
 use crate::memory::{take, take_vectors};
@@ -132,7 +133,7 @@ pub(super) fn gather(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>) {
     gather_faces(bodies, kept, 2.0 * half);
 }
 
-/// Lists pairs that may touch within twice `half` \[s\].
+/// Lists pairs that may touch within twice `half` \[s\]; of more than there is room for the nearest.
 fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: f32) {
     // Two that go on steadily are within half their way of each other in the middle of the time.
     let middle = &mut kept.pushed[..bodies.len()];
@@ -140,6 +141,9 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
         *middle = x + v * half;
     }
     let (middle, lists, room) = (&*middle, &mut *kept.lists, &mut *kept.pairs);
+    // Until all are known, each pair has its gap for its lean.
+    let is_nearer = |one: &Pair, other: &Pair| (one.lean, one.rows) < (other.lean, other.rows);
+    let mut count = 0;
     let around = bodies.near.room();
     let Bodies { velocity, radius, inverse_mass, material, elasticity, materials, report, near, bound, .. } = bodies;
     near.pairs(middle, reach, &mut |row, other| {
@@ -148,23 +152,26 @@ fn gather_pairs(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, half: f32, reach: 
             return;
         }
         let way = length(velocity[a] - velocity[b]) * half;
-        let near = radius[a] + radius[b] + MARGIN * min(radius[a], radius[b]) + way;
+        let touch = radius[a] + radius[b];
+        let near = touch + MARGIN * min(radius[a], radius[b]) + way;
         let d = between(around, middle[b], middle[a]);
         let yielding = inverse_mass[a] + inverse_mass[b];
         let is_sound = |x: f32| x > 0.0 && x < f32::INFINITY;
-        if !(d.dot(d) < near * near) || !is_sound(radius[a] + radius[b]) || !is_sound(yielding) {
+        if !(d.dot(d) < near * near) || !is_sound(touch) || !is_sound(yielding) {
             return;
         }
-        let Some(place) = room.get_mut(lists.pairs as usize) else {
-            report.caps.contacts += 1;
-            return;
-        };
+        let gap = length(d) - touch;
         let of_both = [a, b].map(|row| material[row].checked_sub(1));
         let touch = Touch::new(of_two(materials, [elasticity[a], elasticity[b]], of_both));
-        lists.rough |= u32::from(touch.has_friction());
-        *place = Pair { rows: if row > other { [row, other] } else { [other, row] }, lean: 0.0, given: 0.0, touch };
-        lists.pairs += 1;
+        let rows = if row > other { [row, other] } else { [other, row] };
+        let is_left_out = least::put(room, &mut count, Pair { rows, lean: gap, given: 0.0, touch }, is_nearer);
+        report.caps.contacts += u64::from(is_left_out);
     });
+    lists.pairs = count as u32;
+    for pair in &mut room[..count] {
+        pair.lean = 0.0;
+        lists.rough |= u32::from(pair.touch.has_friction());
+    }
 }
 
 /// Half the time for which a list is to do, and how far two may then be from each other that touch in it; none: no two can.

@@ -35,14 +35,14 @@ pub(super) use touch::{TangentImpulse, Touch, bounce};
 /// Within a sub-step bounces lead to each other, one after the other: what falls on a ball that has just met the floor meets one that comes up, and a row of
 /// balls passes a blow on to its end. Each takes no more than it finds, so that what has an elasticity of one keeps its energy, but for
 /// some thousandths in crowds and long sub-steps, by the moving apart. A sub-step has room for 64 such rounds; a light ball between two that are ten times as
-/// heavy may ask for more, and stops both then. Observers are told of what a contact passes on within a sub-step as of one blow. Who meets faster than rests does is moved aside along what bears it, and not into that.
+/// heavy may ask for more, and stops both then, which [`Effort::capped`](crate::Effort) counts. Observers are told of what a contact passes on within a sub-step as of one blow. Who meets faster than rests does is moved aside along what bears it, and not into that.
 ///
 /// Scenery that curves is struck where a particle touches it, along the normal there. It takes the velocity across it where the ball is after the
 /// sub-step, if that slides, so that nothing gains by sliding in a bowl (RATTLE: Andersen, J. Comput. Phys. 52, 1983); an edge that is level with
 /// the face beside it is part of that.
 ///
-/// Contacts are gone through from the ground up, in the same order whatever index has found them: while no list is full
-/// (`caps.contacts`), bits do not depend on it.
+/// Contacts are gone through from the ground up, in the same order whatever index has found them; of more than lists have room for (`caps.contacts`) the
+/// nearest count. So bits do not depend on the index.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contacts {
     /// How far a contact gives way to a force \[m/N\]: zero is hard.

@@ -65,7 +65,7 @@ fn driven(bodies: &Bodies<'_>) -> Vec3 {
 pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
     let (is_last, rough) = (bodies.substep.is_last(), kept.lists.rough != 0);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
-    pass.bounce_on(pairs, faces);
+    let still_bounce = pass.bounce_on(pairs, faces);
     for face in faces.iter_mut().filter(|face| face.touch.is_on()) {
         let row = face.row as usize;
         // What was at rest may stay; what bounces higher than by what drives it does so along the normal by which its approach is known.
@@ -84,6 +84,7 @@ pub(super) fn settle(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f
         faces.iter_mut().filter(|face| face.touch.rubs()).for_each(|face| pass.rub_face(face, sweep == 0));
         pairs.iter_mut().filter(|pair| pair.touch.rubs()).for_each(|pair| pass.rub_pair(pair, sweep == 0));
     }
+    bodies.report.effort.capped += u64::from(still_bounce);
     report::report(bodies, kept);
 }
 

@@ -12,6 +12,7 @@ use super::narrow::are_near;
 use super::scenery::max_travel;
 use super::sleep;
 use crate::lanes::{ABREAST, run_abreast};
+use crate::least;
 use crate::material::of_two;
 use crate::math::{length, max};
 use crate::memory::{take, take_vectors};
@@ -126,7 +127,7 @@ fn list(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, forms: Forms<'_>, scratch:
     *kept.lists = Lists { name: kept.lists.name, pairs: len as u32, known: 1, ..bytemuck::Zeroable::zeroed() };
 }
 
-/// Writes down the numbers of all two that may touch, in whatever order; returns how many that are.
+/// Writes down the numbers of all two that may touch, in whatever order, and the lowest of more than there is room for; returns how many that are.
 fn invite(
     bodies: &mut Bodies<'_>,
     kept: &mut Kept<'_>,
@@ -141,7 +142,7 @@ fn invite(
             widest = max(widest, body.radius + body.max_travel);
         }
     }
-    let mut found = 0;
+    let (mut found, is_less) = (0, |one: &[u32; 2], other: &[u32; 2]| one < other);
     let report = &mut *bodies.report;
     bodies.near.pairs(middles, 2.0 * widest, &mut |row, other| {
         let [a, b] = [row.min(other) + 1, row.max(other) + 1];
@@ -150,24 +151,16 @@ fn invite(
         if !(one.moves() || two.moves()) || !(length(one.center - two.center) <= reach) {
             return;
         }
-        match candidates.get_mut(found) {
-            Some(place) => *place = [a, b],
-            None => report.caps.contacts += 1,
-        }
-        found += 1;
+        report.caps.contacts += u64::from(least::put(candidates, &mut found, [a, b], is_less));
     });
     if !kept.balls.is_empty() {
         let mut left_out = 0;
         balls::invite(bodies, kept, forms, Around { middles, widest, rows }, &mut |pair| {
-            match candidates.get_mut(found) {
-                Some(place) => *place = pair,
-                None => left_out += 1,
-            }
-            found += 1;
+            left_out += u64::from(least::put(candidates, &mut found, pair, is_less));
         });
         bodies.report.caps.contacts += left_out;
     }
-    found.min(candidates.len())
+    found
 }
 
 /// A bit of the second number of two boxes that are farther apart than they may go before the lists are made anew.

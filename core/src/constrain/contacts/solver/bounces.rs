@@ -6,8 +6,10 @@ use crate::collide::RESTING;
 use crate::math::{aside, max, min, sqrt};
 use glam::Vec3;
 
-/// How often at most a bounce may lead to others in a sub-step.
+/// How often at most a bounce may lead to others in a sub-step, and how often they go from above on at first. Then every other round begins below, so that a row is
+/// gone through in one, whichever way it is numbered.
 const BOUNCES: u32 = 64;
+const FROM_ABOVE: u32 = 48;
 /// The share of its weight that a pair keeps at least that something bears: else the light one gives way all the same, as a heavy one would be
 /// raised by more than it can pay for.
 const LEAST: f32 = 0.1;
@@ -32,8 +34,8 @@ impl Pass<'_> {
         if weight(0) + weight(1) > LEAST * whole { ways } else { [normal; 2] }
     }
 
-    /// Lets what bounces have thrown against others bounce on these, until nothing does any more or often enough.
-    pub(super) fn bounce_on(&mut self, pairs: &mut [Pair], faces: &mut [Face]) {
+    /// Lets what bounces have thrown against others bounce on these, until nothing does any more or often enough; tells whether something still does.
+    pub(super) fn bounce_on(&mut self, pairs: &mut [Pair], faces: &mut [Face]) -> bool {
         self.least = max(self.calm, FAINT * *self.hardest);
         while *self.hardest > 0.0 && self.round <= BOUNCES {
             (*self.hardest, self.round) = (0.0, self.round + 1);
@@ -42,13 +44,16 @@ impl Pass<'_> {
                     self.bounce_face(face, 0.0);
                 }
             }
-            for pair in pairs.iter_mut().rev().filter(|pair| pair.touch.is_on()) {
-                if pair.rows.iter().any(|&row| self.is_thrown(row)) {
+            let is_from_above = self.round <= FROM_ABOVE || self.round.is_multiple_of(2);
+            for i in 0..pairs.len() {
+                let pair = &mut pairs[if is_from_above { pairs.len() - 1 - i } else { i }];
+                if pair.touch.is_on() && pair.rows.iter().any(|&row| self.is_thrown(row)) {
                     let (_, normal) = self.ends(pair);
                     self.bounce_pair(pair, normal, 0.0);
                 }
             }
         }
+        *self.hardest > 0.0
     }
 
     /// Tells whether a particle has been thrown in this round of bounces or in the one before.
