@@ -15,8 +15,9 @@ use std::collections::{BTreeMap, BTreeSet};
 const SOFT: f64 = 1e-3;
 /// The share of that weight which may be out of balance in the end.
 const BALANCED: f64 = 1e-4;
-/// Pulls of links that may be worked out.
+/// Pulls of links that may be worked out, and the rounds in which those of a group of links are: a chain takes some for each of its links.
 const MOST: usize = 20_000_000;
+const ROUNDS: [usize; 2] = [4_000, 200];
 
 /// A link between two particles of the start.
 pub(super) struct Link {
@@ -193,7 +194,10 @@ fn together(nodes: &[Node], links: &[Link]) -> Vec<Vec<usize>> {
 /// Brings the particles of a group to rest. False, if the budget of pulls ran out before.
 fn relax(nodes: &mut [Node], own: &[usize], links: &[&Link], weight: f64, budget: &mut usize) -> bool {
     let mut energy = 0.0;
-    while *budget > links.len() {
+    for _ in 0..ROUNDS[0] + ROUNDS[1] * links.len() {
+        if *budget <= links.len() {
+            break;
+        }
         *budget -= links.len();
         own.iter().for_each(|&i| nodes[i].force = nodes[i].load);
         for link in links {

@@ -7,7 +7,7 @@ use super::region::{Region, Run, widened};
 use super::search::{Search, answers};
 use super::sorted::Sorted;
 use super::{Cost, Facts, Neighbour, SpatialIndex, Stats, TooSmall};
-use crate::math::max;
+use crate::math::{max, min};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -89,6 +89,9 @@ impl Layout {
 /// Tells its facts from those of other structures.
 const NAME: u32 = u32::from_le_bytes(*b"grid");
 
+/// Points by which a box around most of them is found, about.
+const SOME: usize = 64;
+
 /// Cells grow by this factor until there is memory for all.
 const GROWTH: f32 = 1.25;
 
@@ -101,7 +104,7 @@ impl<'m> Grid<'m> {
     }
 
     /// Cells as large as the reach, or as memory demands; without a reach by the density.
-    fn lay_out(&mut self) {
+    fn lay_out(&mut self, points: &[Vec3]) {
         let bounds = [self.sorted.low, self.sorted.high];
         let most = self.starts.len().saturating_sub(2);
         let reach = self.sorted.domain.length(self.reach);
@@ -111,6 +114,43 @@ impl<'m> Grid<'m> {
         } else {
             (Layout::by_density(bounds, self.sorted.len, most), 0)
         };
+        if self.enlarged > 0 && reach > 0.0 {
+            // A few that are far off would make all cells too large. Outside of the box around most of them the cells at its sides have everything.
+            let (layout, enlarged) = Layout::enlarged(self.middle(points), reach * 1.000_01, most);
+            if layout.cell * GROWTH < self.layout.cell
+                && self.crowding(layout, points) < self.crowding(self.layout, points)
+            {
+                (self.layout, self.enlarged) = (layout, enlarged);
+            }
+        }
+    }
+
+    /// A box around most of the points, as some of them tell: from a few of the lowest of these to a few of the highest, and as far again as that is wide.
+    fn middle(&self, points: &[Vec3]) -> [Vec3; 2] {
+        let (domain, every) = (self.sorted.domain, (points.len() / SOME).max(1));
+        let some = points.iter().step_by(every).filter(|point| point.is_finite()).map(|&point| domain.place(point));
+        let some = heapless::Vec::<Vec3, { 2 * SOME }>::from_iter(some.take(2 * SOME));
+        let (mut low, mut high) = (self.sorted.low, self.sorted.high);
+        for axis in 0..3 {
+            let mut along = heapless::Vec::<f32, { 2 * SOME }>::from_iter(some.iter().map(|point| point[axis]));
+            along.sort_unstable_by(f32::total_cmp);
+            let few = along.len() / 16;
+            if let Some((&from, &to)) = along.get(few).zip(along.get(along.len().saturating_sub(1 + few))) {
+                (low[axis], high[axis]) = (max(low[axis], from - (to - from)), min(high[axis], to + (to - from)));
+            }
+        }
+        [low, high]
+    }
+
+    /// The pairs of points that have a cell in common, each counted from both sides.
+    fn crowding(&mut self, layout: Layout, points: &[Vec3]) -> u64 {
+        let domain = self.sorted.domain;
+        let Some(counts) = self.starts.get_mut(..layout.count()) else { return u64::MAX };
+        counts.fill(0);
+        for point in points.iter().filter(|point| point.is_finite()) {
+            counts[layout.cell(domain.place(*point))] += 1;
+        }
+        counts.iter().map(|&count| u64::from(count) * u64::from(count)).fold(0, u64::saturating_add)
     }
 }
 
@@ -171,7 +211,7 @@ impl SpatialIndex for Grid<'_> {
         if self.sorted.len == 0 {
             return Ok(());
         }
-        self.lay_out();
+        self.lay_out(points);
         let layout = self.layout;
         sort_by_cell(&mut self.sorted, &mut self.starts[..layout.count() + 2], points, |point| layout.cell(point));
         Ok(())
@@ -182,20 +222,20 @@ impl SpatialIndex for Grid<'_> {
     }
 
     fn facts(&self) -> Option<Facts> {
-        let (Layout { cell, inverse, cells: [x, y, z], .. }, reach) = (self.layout, self.reach);
-        let floats = [reach, cell, inverse].map(f32::to_bits);
-        let [reach, cell, inverse] = floats;
+        let Layout { low, cell, cells: [x, y, z], .. } = self.layout;
+        let [reach, cell, a, b, c] = [self.reach, cell, low.x, low.y, low.z].map(f32::to_bits);
         let [x, y, z, enlarged] = [x, y, z, self.enlarged].map(|count| count as u32);
-        self.sorted.facts(NAME, [reach, cell, inverse, x, y, z, enlarged, 0, 0])
+        self.sorted.facts(NAME, [reach, cell, a, b, c, x, y, z, enlarged])
     }
 
     fn take_up(&mut self, facts: &Facts, points: &[Vec3], row_of: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
-        let Some([reach, cell, inverse, x, y, z, enlarged, ..]) = self.sorted.restore(NAME, facts) else {
+        let Some([reach, cell, a, b, c, x, y, z, enlarged]) = self.sorted.restore(NAME, facts) else {
             return false;
         };
-        let [reach, cell, inverse] = [reach, cell, inverse].map(f32::from_bits);
+        let [reach, cell, a, b, c] = [reach, cell, a, b, c].map(f32::from_bits);
         (self.reach, self.enlarged) = (reach, enlarged as usize);
-        self.layout = Layout { low: self.sorted.low, cell, inverse, cells: [x, y, z].map(|count| count as usize) };
+        let cells = [x, y, z].map(|count| count as usize);
+        self.layout = Layout { low: Vec3::new(a, b, c), cell, inverse: 1.0 / cell, cells };
         let starts = self.starts.get_mut(..=self.layout.count()).unwrap_or_default();
         self.sorted.renumber(points, row_of, starts.iter_mut())
     }

@@ -6,6 +6,7 @@ use super::nearby::{self, NOBODY, Nearby, Visit};
 use super::room::Points;
 use super::sorted::Entry;
 use super::{Room, SpatialIndex, between, wrapped_in};
+use crate::least;
 use core::fmt;
 use core::ops::Range;
 use glam::Vec3;
@@ -143,8 +144,7 @@ impl<'a> Neighbours<'a> {
                 let (own, others) = (self.place(row), found[..len].iter().map(|&other| self.entry(other)));
                 Visit { own, others, reach, room: self.room, nearby: &mut nearby, visit }.pay();
             }
-            // Neighbours too many for that are a good part of all points.
-            Some(row) => self.by_all(row, reach, &mut *visit),
+            Some(row) => self.by_lots(index, row, reach, &mut *visit),
             None => {}
         };
         index.neighbours(farther, &mut |row, others| {
@@ -184,7 +184,7 @@ impl<'a> Neighbours<'a> {
                 len += 1;
             }
         });
-        let Some(found) = found.get_mut(..len) else { return self.by_all(row, reach, visit) };
+        let Some(found) = found.get_mut(..len) else { return self.by_lots(index, row, reach, visit) };
         found.sort_unstable();
         let is_near = |&other: &usize| {
             let d = between(self.room, own.1, self.points[other]);
@@ -193,6 +193,35 @@ impl<'a> Neighbours<'a> {
         let rest = (first..self.points.len()).filter(is_near).map(|other| self.entry(other as u32));
         let others = found.iter().map(|&other| self.entry(other)).chain(rest);
         Visit { own, others, reach, room: self.room, nearby: &mut nearby, visit }.pay();
+    }
+
+    /// The neighbours of a row that has too many to be sorted at once: lot by lot, each of which is what comes next of all that the index finds again. Behind
+    /// them come those who are not in the index.
+    #[inline(never)]
+    fn by_lots(&self, index: &dyn SpatialIndex, row: usize, reach: f32, visit: &mut dyn FnMut(usize, &Nearby)) {
+        let (own, farther) = (self.place(row), self.room.map_or(reach, |room| reach + room.slack()));
+        let next = |from: u32| {
+            let (mut found, mut len) = ([0; MOST], 0);
+            index.within(own.1, farther, &mut |others| {
+                for &other in others.iter().filter(|&&other| other >= from && other as usize != row) {
+                    least::put(&mut found, &mut len, other, |one, other| one < other);
+                }
+            });
+            found[..len].sort_unstable();
+            (found, len)
+        };
+        let (mut lot, mut taken) = (next(0), 0);
+        let in_index = core::iter::from_fn(|| {
+            if taken == MOST {
+                (lot, taken) = (next(lot.0[MOST - 1] + 1), 0);
+            }
+            taken += 1;
+            lot.0[..lot.1].get(taken - 1).map(|&other| self.entry(other))
+        });
+        let first = if let Source::First(_, first) = self.source { first } else { self.points.len() };
+        let rest = (first..self.points.len()).filter(|&other| other != row).map(|other| self.entry(other as u32));
+        let mut nearby = Nearby::NOBODY;
+        Visit { own, others: in_index.chain(rest), reach, room: self.room, nearby: &mut nearby, visit }.pay();
     }
 
     /// The neighbours of one row, found by looking at all others.

@@ -11,9 +11,13 @@ use glam::Vec3;
 /// than `MAX_PIECES` of them.
 const PIECE_ERROR: f32 = 1e-4;
 
-/// Into how many pieces a segment is cut at the most. They stray by an eighth of the bend over its square: in a step in
-/// which something turns by an angle a, by a² / 512 of the distance from its axis.
+/// Into how many pieces a segment is cut at the most, as long as none of them turns by more than `TURN`. They stray by an eighth of the bend over its square: in a
+/// step in which something turns by an angle a, by a² / 512 of the distance from its axis.
 const MAX_PIECES: u32 = 8;
+/// The angle by which what turns may do so in a piece, and into how many pieces a segment is cut for that at the most: they stray by a thousandth of the distance from
+/// the axis where something turns no more than sixteen times in a step.
+const TURN: f32 = 0.1;
+const MAX_TURNING_PIECES: u32 = 1024;
 
 /// The largest number of times that what is carried along is pushed off what rounding put it behind: in a corner of three
 /// faces, off each, and once more.
@@ -132,8 +136,9 @@ fn pieces(segment: &Segment, ends: &[Frame; 2]) -> u32 {
     let way = length(segment.step()) + most(|frame| length(frame.velocity)) * time + bend;
     let turning = angle * (angle * far + 2.0 * way) + most(|frame| length(frame.spin_up)) * (time * time) * far;
     let ratio = (turning + bend) / (8.0 * PIECE_ERROR);
-    // The cast rounds down and saturates.
-    if ratio > 1.0 { (sqrt(ratio) as u32).saturating_add(1).min(MAX_PIECES) } else { 1 }
+    // Casts round down and saturate.
+    let straight = if ratio > 1.0 { (sqrt(ratio) as u32).saturating_add(1).min(MAX_PIECES) } else { 1 };
+    straight.max(((angle / TURN) as u32).min(MAX_TURNING_PIECES))
 }
 
 impl<C: Collider, M: Script> Collider for Moving<C, M> {

@@ -7,7 +7,7 @@ use pointmass::{
     Coulomb, Custom, Effort, Emit, Emitter, Force, Gravity, Heap, LennardJones, Measures, Method, Particle, PowerLaw,
     Pressure, Scene, Size, System, Time, Varied, Vec3, Viscosity,
 };
-use pointmass_tests::{every, f64s, gap, is_third, point, run, started, structures};
+use pointmass_tests::{Random, every, f64s, gap, is_third, point, run, started, structures};
 
 const ATOMS: Radial<LennardJones> = Radial(LennardJones { epsilon: 1.0, sigma: 0.3, cutoff: 0.75 });
 const SOFT: Radial<PowerLaw> =
@@ -477,4 +477,37 @@ fn any_exponent_goes() {
     let mut system = started(&scene, 2, 0);
     system.step(&scene, Time::frame(1, 60));
     assert_eq!(system.len(), 2);
+}
+
+/// Who has more neighbours than are sorted at once has all of them, in their order, by any index.
+#[test]
+fn a_crowd_has_all_its_neighbours_in_their_order() {
+    let mut random = Random::new(17);
+    for (count, reach) in [(600, 2.0), (1_300, 0.9), (1_024, 2.0), (513, 2.0)] {
+        let places: Vec<Vec3> = (0..count).map(|_| random.vector(0.5)).collect();
+        let (rows, mut most) = (0..count / 8, 0);
+        let mut want: Vec<(usize, Vec<u32>)> = vec![];
+        Neighbours::among(&places).of(rows.clone(), reach, &mut |row, others| {
+            if want.last().is_none_or(|last| last.0 != row) {
+                want.push((row, vec![]));
+            }
+            want.last_mut().expect("it has just come").1.extend(others.rows());
+        });
+        for &structure in Structure::ALL {
+            let mut memory = vec![0; structure.words(count)];
+            let mut index = structure.index(&mut memory);
+            index.build(&places, reach).expect("there is room");
+            let mut found: Vec<(usize, Vec<u32>)> = vec![];
+            Neighbours::by(Some(&index), &places).of(rows.clone(), reach, &mut |row, others| {
+                if found.last().is_none_or(|last| last.0 != row) {
+                    found.push((row, vec![]));
+                }
+                found.last_mut().expect("it has just come").1.extend(others.rows());
+            });
+            found.sort_by_key(|(row, _)| *row);
+            assert!(found == want, "{count} within {reach} m, {structure}");
+            most = found.iter().map(|(_, others)| others.len()).fold(most, usize::max);
+        }
+        assert!(most > 512 || count == 513 && most == 512, "{most}");
+    }
 }

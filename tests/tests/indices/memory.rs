@@ -84,3 +84,25 @@ fn structures_go_by_their_names() {
     let unknown = "kdtree".parse::<Structure>().expect_err("there is none").to_string();
     assert!(Structure::ALL.iter().all(|structure| unknown.contains(structure.name())), "{unknown}");
 }
+
+/// A few that are far off do not make a grid's cells so large that all others share one.
+#[test]
+fn a_few_far_off_do_not_crowd_a_grid() {
+    let reach = 0.05;
+    for strays in [1, 2, 7] {
+        for far in [1e2f32, 1e6, 1e12] {
+            let mut points = Spread::Cube.points(4_000, 5);
+            let fullest = |points: &[Vec3]| {
+                let mut memory = used(Structure::Grid.words(points.len()));
+                let mut index = Structure::Grid.index(&mut memory);
+                index.build(points, reach).expect("there is room");
+                index.stats().fullest
+            };
+            for stray in 0..strays {
+                points[500 * stray + 3] *= if stray % 2 == 0 { far } else { -far };
+            }
+            let most = fullest(&points);
+            assert!(most < 64, "{strays} at {far} m: {most} in a cell");
+        }
+    }
+}

@@ -20,6 +20,8 @@ pub(crate) struct Set {
     /// One in so many rows is the same as another, or not finite; zero: none.
     copies: usize,
     unsound: usize,
+    /// One in so many is far off.
+    strays: usize,
 }
 
 impl Set {
@@ -28,10 +30,14 @@ impl Set {
         let mut random = Random::new(!self.seed);
         let offset = random.vector(self.offset);
         points.iter_mut().for_each(|point| *point = (*point + offset) * self.size);
+        let (mut far, far_off) = (Random::new(self.seed ^ 1), self.size.min(1e30) * 1e4);
         let mut one_in = |n: usize| n > 0 && (random.word() as usize).is_multiple_of(n);
         for row in 0..self.n {
             if one_in(self.copies) {
                 points[row] = points[row / 2];
+            }
+            if one_in(self.strays) {
+                points[row] += far.vector(1.0) * far_off;
             }
             if one_in(self.unsound) {
                 points[row][row % 3] = [f32::NAN, INF, -INF][row / 3 % 3];
@@ -45,11 +51,12 @@ pub(crate) fn sets(most: usize) -> impl Strategy<Value = Set> {
     let size = prop_oneof![4 => Just(1.0f32), 1 => select(&[0.1, 1e-12, 1e-30, 1e-41, 1e12, 1e30, 1e38][..])];
     let offset = select(&[0.0f32, 0.0, 0.0, 3.0, 1e3, 1e6][..]);
     let one_in = || select(&[0usize, 0, 30, 3][..]);
-    (select(&Spread::ALL[..]), 0..most, any::<u64>(), size, offset, one_in(), one_in()).prop_map(
-        |(spread, n, seed, size, offset, copies, unsound)| {
+    let strays = select(&[0usize, 0, 0, 50, 7][..]);
+    (select(&Spread::ALL[..]), 0..most, any::<u64>(), size, offset, one_in(), one_in(), strays).prop_map(
+        |(spread, n, seed, size, offset, copies, unsound, strays)| {
             // The largest stay finite.
             let offset = if size > 1e37 { offset.min(2.0) } else { offset };
-            Set { spread, n, seed, size, offset, copies, unsound }
+            Set { spread, n, seed, size, offset, copies, unsound, strays }
         },
     )
 }

@@ -200,3 +200,33 @@ fn what_friction_brakes_on_a_wall_that_turns_away_is_not_driven_along() {
         }
     }
 }
+
+/// A blade that turns fast strikes what it sweeps over as it does in shorter steps, if it turns by less than a quarter in one; and if by several turns, it strikes.
+#[test]
+fn what_turns_fast_strikes_no_otherwise_in_long_steps() {
+    let blade = Cuboid { min: Vec3::new(-1.0, -0.1, -0.01), max: Vec3::new(1.0, 0.1, 0.01) };
+    let mut random = Random::new(5);
+    let around = |_: usize| {
+        let out = Vec3::new(random.between(-1.0, 1.0), random.between(-0.09, 0.09), random.between(-1.0, 1.0));
+        Particle { position: out, elasticity: 0.5, ..Particle::REST }
+    };
+    let is_beside =
+        |particle: &Particle| particle.position.z.abs() > 0.05 && particle.position.with_y(0.0).length() < 0.95;
+    let start: Vec<_> = (0..600).map(around).filter(is_beside).collect();
+    for turns in [3.0f32, 7.0, 12.0, 480.0] {
+        let motion = Motion { axis: Vec3::Y, spin: turns, ..Motion::STILL };
+        let collider = Moving::new(blade, &blade.bounds(), motion);
+        let scene = Scene { start: &start, colliders: &collider, max_bounces: 64, ..Scene::EMPTY };
+        let after = |steps: u32| {
+            let mut system = started(&scene, start.len(), 0);
+            for step in 1..=steps {
+                system.step_to(&scene, Time::frame(step.into(), 60 * steps));
+            }
+            let fast: Vec<f64> = system.particles().velocity.iter().map(|v| f64::from(v.length())).collect();
+            (fast.iter().map(|v| v * v).sum::<f64>(), fast.into_iter().fold(0.0, f64::max), system.totals().hits)
+        };
+        let (long, short) = (after(1), after(400));
+        let is_like = (long.0 / short.0 - 1.0).abs() < 2e-3 && (long.1 / short.1 - 1.0).abs() < 0.01;
+        assert!(long.2 > 30 && (is_like || turns > 15.0), "{turns}/s: {long:?}, in short steps {short:?}");
+    }
+}
