@@ -29,6 +29,7 @@ pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     advice.extend(taut(check, stand));
     advice.extend(check.holds.iter().filter_map(|hold| held(check, hold)));
     advice.extend(check.holds.iter().filter_map(|hold| fallen(check, hold)));
+    advice.extend(check.holds.iter().filter_map(|hold| tumbling(check, hold)));
     advice.extend(world(check));
     advice
 }
@@ -142,6 +143,13 @@ fn taut(check: &Study, stand: &Stand) -> Option<String> {
 fn held(check: &Study, hold: &Hold) -> Option<String> {
     let warning = hold.warning(check.h())?;
     let Limit::Step(enough) = hold.largest_step() else { return None };
+    let parts = (check.dt / enough).ceil();
+    Some(format!("{warning}: let the scene cut its steps into {parts} (`run.substeps`)"))
+}
+
+/// Advice about boxes that turn too far in a sub-step where they fall.
+fn tumbling(check: &Study, hold: &Hold) -> Option<String> {
+    let (warning, enough) = hold.tumbling(check.h())?;
     let parts = (check.dt / enough).ceil();
     Some(format!("{warning}: let the scene cut its steps into {parts} (`run.substeps`)"))
 }

@@ -120,6 +120,7 @@ impl Bounds {
     pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
         let step = step / self.substeps;
         let held = self.pushed.clone().into_iter().chain(self.holds.iter().filter_map(|hold| hold.warning(step)));
+        let held = held.chain(self.holds.iter().filter_map(|hold| Some(hold.tumbling(step)?.0)));
         let is_alone = method.chooses_steps() || self.drag_step(method).admits(step);
         let held = held.chain(self.birth_warning(step).filter(|_| is_alone));
         if method.chooses_steps() {

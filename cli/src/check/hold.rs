@@ -56,6 +56,9 @@ pub(crate) struct Hold {
     /// Half the least side of boxes \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) half: Option<f64>,
+    /// How fast boxes may turn that strike something with a corner when they have fallen by their own size \[rad/s\].
+    #[serde(skip)]
+    tumbles: f64,
     /// The number of boxes in the pile that `owes` is told of: of all there are, ten at the most; none: there is but one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) pile: Option<usize>,
@@ -136,6 +139,7 @@ impl Hold {
             estimated: false,
             fall: Fall::of(model, kind, held),
             half: None,
+            tumbles: 0.0,
             pile: None,
             more: group.len() - 1,
             leads: kind.leads(),
@@ -164,6 +168,7 @@ impl Hold {
             estimated: false,
             fall: None,
             half: Some(half),
+            tumbles: (4.0 * weight * half).sqrt() / half,
             pile,
             more: 0,
             leads: false,
@@ -240,6 +245,20 @@ impl Hold {
     pub(crate) fn iterations(&self, h: f64) -> u64 {
         let rate = h * self.rate.unwrap_or(0.0);
         (0.5 * rate.hypot(1.0) * 2e4f64.ln()).ceil() as u64
+    }
+
+    /// The warning about sub-steps of `h` \[s\] in which boxes that fall turn too far, and the sub-steps that are short enough for that \[s\]; or none.
+    pub(crate) fn tumbling(&self, h: f64) -> Option<(String, f64)> {
+        let (turn, enough) = (self.tumbles * h, TURN / self.tumbles);
+        (turn > TURN * (1.0 + 1e-6)).then(|| {
+            let (name, now) = (self.name(), time(h));
+            let told = format!(
+                "in sub-steps of {now} {name} that have fallen by their own size may turn by {} rad, and sink into what they strike by a \
+                 twentieth of their size and more",
+                plain(turn)
+            );
+            (told, enough)
+        })
     }
 
     /// The warning about sub-steps of `h` \[s\] that leave it too far off, or none.

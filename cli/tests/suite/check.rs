@@ -173,6 +173,29 @@ fn piles_of_boxes_sink_by_what_is_told() {
 }
 
 #[test]
+fn boxes_that_turn_far_where_they_fall_are_remarked_on() {
+    let folder = Folder::new();
+    for (side, rate, substeps, is_told) in [
+        (0.016, 24.0, 1, true),
+        (0.016, 60.0, 1, true),
+        (0.1, 24.0, 3, true),
+        (0.016, 60.0, 6, false),
+        (0.5, 60.0, 2, false),
+    ] {
+        let scene = json!({
+            "run": {"duration": 1, "dt": 1.0 / rate, "substeps": substeps},
+            "forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}],
+            "boxes": [{"sides": [side, side, side], "mass": 0.3, "position": [0, 1, 0]}],
+        });
+        folder.write("a.json", scene.to_string());
+        let checked = folder.run("check a.json").stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(checked.contains("sink into what they strike"), is_told, "{side} {rate} {substeps}: {checked}");
+        let ran = folder.run("run a.json --steps 1 --out o.csv");
+        assert_eq!((ran.code, ran.stderr.contains("sink into what")), (0, is_told), "{}", ran.stderr);
+    }
+}
+
+#[test]
 fn odd_scenes_are_checked_too() {
     let folder = Folder::new();
     let two = "particle 0 0 0 0 0 0 1 0 0 0 0 -1 particle 1 0 0 0 0 0 1 0 0 0 0 -1\n";
