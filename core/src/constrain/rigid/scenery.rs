@@ -7,6 +7,7 @@ use super::facets::{Spot, Spots, four, push};
 use super::forms::{Form, Forms};
 use super::manifold::{DIRECTIONS, Manifold, POINTS, Point};
 use super::skin;
+use super::span::FAR;
 use crate::material::on_surface;
 use crate::math::{dot, length, max, min};
 use crate::shape::{Aabb, Contact, Segment, Surface, Triangle};
@@ -72,9 +73,7 @@ pub(super) fn meet(
     slots: &mut [Manifold],
 ) {
     let h = bodies.substep.seconds();
-    let (driven, small) = (length(body.drive[0]) * (h * h), body.small());
-    // In sub-steps in which it falls by a good part of its size it gets there before it has been as fast.
-    let way = body.speed() * h + if driven > DRIVEN * body.least() { driven } else { 0.0 };
+    let (way, small) = (body.speed() * h + driven(body, h), body.small());
     let is_new = bodies.substep.number == 0 || may_move;
     if !is_new && body.spare > way {
         body.spare -= way;
@@ -115,9 +114,18 @@ pub(super) fn meet(
     body.met = met;
 }
 
+/// How far forces drive a body in a sub-step of `h` \[s\], if that is a good part of its size: it gets somewhere before it has been as fast \[m\].
+fn driven(body: &Body, h: f32) -> f32 {
+    let driven = length(body.drive[0]) * (h * h);
+    if driven > DRIVEN * body.least() { driven } else { 0.0 }
+}
+
 /// Stops the middle of a body before the scenery that it would have gone through in a sub-step of `h` \[s\], or come close to. Corners are held by how fast they are as
-/// it begins: where it turns far, they go elsewhere, and who has his middle behind a surface is held by nothing any more.
+/// it begins: where it turns far, or is driven far, they go elsewhere, and who has his middle behind a surface is held by nothing any more.
 pub(super) fn hold_back(bodies: &Bodies<'_>, body: &mut Body, h: f32) {
+    if driven(body, h) == 0.0 && body.omega.dot(body.omega) * (h * h) <= FAR {
+        return;
+    }
     let drift = if body.pressed == 0 { body.drift } else { Vec3::ZERO };
     let (way, close) = (body.velocity * h + drift, CLOSE * body.least());
     let far = length(way);
