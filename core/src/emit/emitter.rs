@@ -284,7 +284,9 @@ impl<S: Surface, M: Script> Emitter<S, M> {
                 *tries -= 1;
                 births.offer(number, at, |stream, births| {
                     let newborn = self.newborn((stream, stream.units_of(PLACES)), at, aim, &mut is_outside);
-                    (births.count_within(newborn.position, radius) < u64::from(fewest)).then_some(newborn)
+                    let is_sparse = births.count_within(newborn.position, radius) < u64::from(fewest);
+                    is_outside &= is_sparse;
+                    is_sparse.then_some(newborn)
                 });
                 true
             }
