@@ -226,7 +226,7 @@ fn births_inside_thin_capsules_are_even_by_volume() {
     }
 }
 
-/// What no place is found in has births on its surface, which are counted.
+/// Births for which no place is found inside lie on the surface, and are counted.
 #[test]
 fn births_for_which_there_is_no_place_inside_are_counted() {
     let disc = Disc { center: Vec3::ZERO, normal: Vec3::Y, radius: 1.0 };

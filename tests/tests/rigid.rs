@@ -574,7 +574,7 @@ fn files_name_boxes_and_say_what_is_wrong_with_them() {
     }
 }
 
-/// Of more pairs than there is room for the same are left out, whatever index finds them.
+/// The same pairs, of more than there is room for, are left out whatever index finds them.
 #[test]
 fn who_finds_no_room_hangs_on_no_index() {
     let mut random = Random::new(3);
@@ -604,7 +604,7 @@ fn who_finds_no_room_hangs_on_no_index() {
     }
 }
 
-/// What flies free for a minute keeps its energy and its angular momentum, about its middle axis too, where it flips again and again.
+/// A box that flies free for a minute keeps its energy and its angular momentum, about its middle axis too, where it flips again and again.
 #[test]
 fn a_box_that_flies_free_for_a_minute_keeps_energy_and_angular_momentum() {
     let half = 0.5 * Vec3::new(0.1, 0.2, 0.3) / 3f32.sqrt();

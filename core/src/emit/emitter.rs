@@ -266,7 +266,7 @@ impl<S: Surface, M: Script> Emitter<S, M> {
         }
     }
 
-    /// How many places may be tried in a step.
+    /// The number of places that may be tried in a step.
     fn tries(&self, births: &Births<'_>) -> u64 {
         if self.where_sparse.is_some() { TRIES.saturating_mul(births.capacity() as u64) } else { u64::MAX }
     }

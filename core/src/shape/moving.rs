@@ -24,8 +24,8 @@ const MAX_TURNING_PIECES: u32 = 1024;
 const MAX_PUSHES: u32 = 4;
 
 /// A collider that moves as a script says. What it consists of should stand still in it: what rests on that is taken along by this motion alone.
-/// What leans on something that turns by more than a radian or so in a step is driven along it too far, by the acceleration that it has there as it comes to lean: such
-/// want shorter steps.
+/// A particle that leans on something which turns by more than a radian or so in a step is driven along it too far, by the acceleration that it has there as it comes to
+/// lean: such motions want shorter steps.
 ///
 /// ```
 /// use pointmass::motion::{Key, Motion};

@@ -147,7 +147,7 @@ fn a_heap_falls_to_the_same_bits_whatever_the_index() {
     }
 }
 
-/// Of more contacts than there is room for the nearest count, and which these are hangs on no index.
+/// The nearest of more contacts than there is room for count, and which these are hangs on no index.
 #[test]
 fn who_finds_no_room_is_the_same_whatever_the_index() {
     let mut random = Random::new(29);

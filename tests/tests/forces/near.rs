@@ -479,7 +479,7 @@ fn any_exponent_goes() {
     assert_eq!(system.len(), 2);
 }
 
-/// Who has more neighbours than are sorted at once has all of them, in their order, by any index.
+/// A particle that has more neighbours than are sorted at once has all of them, in their order, by any index.
 #[test]
 fn a_crowd_has_all_its_neighbours_in_their_order() {
     let mut random = Random::new(17);

@@ -223,7 +223,7 @@ impl<F: Eight> Pair<F> {
         Kept { places: [Vectors::select(slides, moved, on), off], ..kept }
     }
 
-    /// What impulses at a point change the velocity there by, as [`yields`], of both.
+    /// The changes of the velocity at a point that impulses there make, as [`yields`], of both bodies together.
     #[inline(always)]
     fn yielding(&self, arms: [Vectors<F>; 2], directions: [Vectors<F>; 3]) -> [F; 6] {
         let zero = arms[0].0[0].all(0.0);
