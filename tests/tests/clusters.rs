@@ -441,7 +441,7 @@ fn files_name_clusters_and_say_what_is_wrong_with_them() {
         file(r#"{"particles": [0, 1, 2], "compliance": 1e-4, "damping": 2}"#).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(SceneFile::from_json("again", &sound.to_json()), Ok(sound));
     for (cluster, what) in [
-        (r#"{"particles": [0]}"#, "constraints[0].particles"),
+        (r#"{"particles": [0]}"#, "constraints[0].cluster.particles"),
         (r#"{"particles": [0, 1, 0]}"#, "twice"),
         (r#"{"particles": [0, 3]}"#, "particle 3 is out of range"),
         (r#"{"particles": [0, 1], "compliance": -1}"#, "m/N"),

@@ -638,6 +638,61 @@ fn a_box_that_flies_free_for_a_minute_keeps_energy_and_angular_momentum() {
 
 /// However few sub-steps there are, nobody falls through the ground, and nothing gets more energy than it has fallen for: in one sub-step the smallest fall by
 /// several times their size, and turn by a radian and more.
+/// How far the lowest corner of cubes of eight particles is below zero, as a share of their side \[m\].
+fn depth(system: &System<Heap>, side: f32) -> f32 {
+    let middle = |of: &[Vec3]| of.iter().map(|x| x.y).sum::<f32>() / 8.0;
+    let lowest = |of: &[Vec3]| of.iter().map(|x| x.y).fold(f32::INFINITY, f32::min);
+    // Particles stand for a solid cube where its corners would stand for a hollow one.
+    let corners =
+        system.particles().position.chunks(8).map(|of| middle(of) + 3.0f32.sqrt() * (lowest(of) - middle(of)));
+    -corners.fold(f32::INFINITY, f32::min) / side
+}
+
+#[test]
+fn dice_that_come_down_by_half_their_size_in_a_sub_step_stop_at_the_ground() {
+    let mut random = Random::new(43);
+    let slab = Cuboid { min: Vec3::new(-9.0, -2.0, -9.0), max: Vec3::new(9.0, 0.0, 9.0) };
+    let grounds: [&dyn Collider; 2] = [&GROUND, &slab];
+    let mut deepest = 0.0f32;
+    for round in 0..often(120) {
+        let (side, rate, substeps) =
+            [(0.016, 60, 4), (0.05, 60, 1), (0.05, 60, 2), (0.1, 24, 4), (0.3, 24, 2), (0.002, 60, 12)][round % 6];
+        let method = Method::ALL[round % Method::ALL.len()];
+        let (mut start, mut boxes) = (vec![], vec![]);
+        let drop = 0.5 * (0.6 * side * (rate * substeps) as f32).powi(2) / G as f32;
+        for number in 0..6 {
+            let (axis, half) = (random.direction(), random.between(0.0, 1.5));
+            let [x, y, z] = (axis * half.sin()).to_array();
+            let middle = Vec3::new(3.0 * side * number as f32, side + random.between(0.8, 1.0) * drop, 0.0);
+            let of = RigidBox {
+                turn: [x, y, z, half.cos()],
+                ..RigidBox::new(Vec3::splat(side), middle, start.len() as u32)
+            };
+            let whole = Particle {
+                position: middle,
+                velocity: random.vector(1.0),
+                mass: 0.01,
+                elasticity: random.between(0.0, 0.6),
+                ..Particle::REST
+            };
+            start.extend(thrown(&of, whole, random.vector(10.0)));
+            boxes.push(of);
+        }
+        let (bodies, materials) = (RigidBodies::boxes(boxes), rough(0.4));
+        let parts = Scene { start: &start, forces: &DOWN, colliders: grounds[round / 6 % 2], ..Scene::EMPTY };
+        let integrator = method.integrator();
+        let scene = Scene { constraints: &bodies, materials: &materials, substeps, integrator, ..parts };
+        let mut system = started(&scene, start.len(), 0);
+        for frame in 1..=3 * u64::from(rate) {
+            system.step_to(&scene, Time::frame(frame, rate));
+            let depth = depth(&system, side);
+            deepest = deepest.max(depth);
+            assert!(depth < 0.08, "{round}: {side} m, {rate}/s in {substeps}, {method}, frame {frame}: {depth}");
+        }
+    }
+    assert!(deepest > -0.01, "none of them came down: {deepest}");
+}
+
 #[test]
 fn the_smallest_of_dice_in_the_longest_steps_stay_above_the_ground() {
     let mut random = Random::new(41);

@@ -500,11 +500,11 @@ fn files_name_ropes_and_say_what_is_wrong_with_them() {
     let sound = sound.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(SceneFile::from_json("again", &sound.to_json()), Ok(sound));
     for (rope, what) in [
-        (r#"{"particles": [0], "lengths": [1]}"#, "constraints[0].particles"),
+        (r#"{"particles": [0], "lengths": [1]}"#, "constraints[0].rope.particles"),
         (r#"{"particles": [0, 1], "lengths": [1], "closed": true}"#, "three particles"),
         (r#"{"particles": [0, 1, 0], "lengths": [1]}"#, "twice"),
         (r#"{"particles": [0, 3], "lengths": [1]}"#, "particle 3 is out of range"),
-        (r#"{"particles": [0, 1], "lengths": []}"#, "constraints[0].lengths"),
+        (r#"{"particles": [0, 1], "lengths": []}"#, "constraints[0].rope.lengths"),
         (r#"{"particles": [0, 1], "lengths": [1, 1]}"#, "more lengths"),
         (r#"{"particles": [0, 1], "lengths": [-1]}"#, "below zero"),
         (r#"{"particles": [0, 1], "lengths": [1], "compliance": -1}"#, "m/N"),

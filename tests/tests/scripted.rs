@@ -290,7 +290,7 @@ fn a_scene_file_says_keys_for_all_three_and_reads_back_what_it_wrote() {
     assert_eq!(x[0], Vec3::new(2.0, 1.0, 0.0));
     assert!(x[1].z < 1.0 && x[10].z > 6.8, "{x:?}");
     for (from, to, at) in [
-        (r#""time": 1, "place": [2"#, r#""time": -1, "place": [2"#, "constraints[0].motion"),
+        (r#""time": 1, "place": [2"#, r#""time": -1, "place": [2"#, "constraints[0].attach.motion"),
         (r#""time": 1, "place": [0, 0, 7]"#, r#""time": 0"#, "emitters[0].motion"),
         (r#""period": 2"#, r#""period": 1"#, "scenery[0].motion"),
         (r#""particles": [0],"#, r#""particles": [3],"#, "constraints[0]"),

@@ -376,7 +376,7 @@ fn files_give_limits_to_cloth_of_springs() {
         ("\"shear\": 0.2", "\"damping\": -2", "cloths[0].limits.damping", "not -2"),
         ("{\"warp\": [0.9, 1.02], \"weft\": [0.8, 1.1], \"shear\": 0.2}", "{}", "cloths[0].limits.warp", "such as"),
         ("\"mass\": 1,", "\"mass\": 1, \"shell\": {\"stretch\": [9, 9], \"shear\": 1},", "cloths[0].limits", "shell"),
-        ("[0, 1.5]", "[0, 0.5]", "constraints[0].warp", "such as [0.9, 1.02]"),
+        ("[0, 1.5]", "[0, 0.5]", "constraints[0].strain_limits.warp", "such as [0.9, 1.02]"),
         ("[[1, 2, 4]]", "[[1, 2, 40]]", "constraints[0]", "particle 40 is out of range"),
     ] {
         let file = SceneFile::from_json("a.json", &text.replace(from, to)).expect("it is a scene");

@@ -135,7 +135,7 @@ pub trait Constraint: Sync {
     /// velocities follow.
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>);
 
-    /// Tells whether it may be [asked again](Constraint::project_again).
+    /// Tells whether it may be [asked again](Constraint::project_again), as members of lists are; those of tuples are asked once.
     fn repeats(&self) -> bool {
         false
     }

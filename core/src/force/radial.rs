@@ -32,7 +32,7 @@ pub trait RadialLaw: Sync {
     /// fast. Bit by bit what [`RadialLaw::pull`] gives, of squares above zero; behind the last of the others it may be anything.
     fn pulls(&self, run: &Run<'_>, pull: &mut [f32; RUN]) {
         for (k, (pull, &square)) in pull.iter_mut().zip(run.square).enumerate().take(run.others.len()) {
-            *pull = self.pull(square, &run.pair(k));
+            *pull = if square > 0.0 { self.pull(square, &run.pair(k)) } else { 0.0 };
         }
     }
 

@@ -5,6 +5,7 @@ use super::check_shape::check_shape;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
 use super::references::{MAX_GROUPS, MAX_MATERIALS};
 use super::{Boxes, Cord, Fog, Light, Material, SceneError, SceneFile, Sky};
+use crate::constrain::ConstraintKind;
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::force::Spring;
 use crate::material::TrailMaterial;
@@ -37,7 +38,8 @@ impl SceneFile {
         }
         for (i, constraint) in self.constraints.iter().enumerate() {
             if let Some((at, message)) = constraint.fault() {
-                return Err(SceneError::value(format!("constraints[{i}].{at}"), message));
+                let kind = if let ConstraintKind::TiedRope(_) = constraint { "tied_rope" } else { constraint.name() };
+                return Err(SceneError::value(format!("constraints[{i}].{kind}.{at}"), message));
             }
         }
         for (i, spring) in self.springs.iter().enumerate() {

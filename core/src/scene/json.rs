@@ -39,6 +39,11 @@ impl SceneFile {
         remarks
     }
 
+    /// The names that one had in JSON before.
+    pub fn former_names_of(name: &str) -> impl Iterator<Item = &'static str> {
+        FORMER.into_iter().filter(move |(_, present)| *present == name).map(|(former, _)| former)
+    }
+
     /// Writes JSON, indented, with a line end at the end.
     #[must_use]
     pub fn to_json(&self) -> String {

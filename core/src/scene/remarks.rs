@@ -36,6 +36,10 @@ impl SceneFile {
         self.add_elasticities(&mut add);
         for (i, spring) in self.springs.iter().enumerate() {
             add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
+            let gains =
+                |number: f32| (number < 0.0).then(|| format!("{number} is below 0, so it gains energy without bound"));
+            add(format_args!("springs[{i}].ks"), gains(spring.ks));
+            add(format_args!("springs[{i}].kd"), gains(spring.kd));
         }
         for (i, body) in self.soft_bodies.iter().enumerate() {
             add(
@@ -57,6 +61,7 @@ impl SceneFile {
         add(format_args!("contacts.position"), self.uneven_balls());
         add(format_args!("contacts.impulse"), self.pressed_in());
         add(format_args!("boxes"), self.uneven_boxes());
+        self.add_heaps(&mut add);
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
             add(format_args!("cloths[{i}]"), self.long_for_plate(cloth));
@@ -77,6 +82,7 @@ impl SceneFile {
         }
         for (i, item) in self.scenery.iter().enumerate() {
             add(format_args!("scenery[{i}].shape"), self.reaches_out(item));
+            add(format_args!("scenery[{i}].shape.triangle"), thin(&item.shape));
         }
         self.add_idle(&mut add);
         self.add_unread(&mut add);
@@ -135,6 +141,29 @@ impl SceneFile {
             )
         };
         (depth > room && heaviest.mass > lightest.mass).then(sinks)
+    }
+
+    /// Remarks on bodies that begin in one place.
+    fn add_heaps(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        let is_scattered = |boxes: &Boxes| boxes.scatter.is_some_and(|scatter| scatter.position > 0.0);
+        let free = self.boxes.iter().enumerate().filter(|(_, boxes)| !boxes.fixed && !is_scattered(boxes));
+        let mut places = Vec::new();
+        for (i, boxes) in free {
+            let spacing = boxes.spacing.unwrap_or(boxes.sides).to_array();
+            let axes = ["x", "y", "z"].into_iter().zip(boxes.count.into_iter().zip(spacing));
+            let heap = axes.filter(|(_, (count, spacing))| *count > 1 && *spacing == 0.0).map(|(name, _)| name).next();
+            let all =
+                |name| format!("0 along {name} puts them into each other, and what begins so need not come apart");
+            add(format_args!("boxes[{i}].spacing"), heap.map(all));
+            // Zero has two signs.
+            places.push(((boxes.position + Vec3::ZERO).to_array().map(f32::to_bits), i));
+        }
+        places.sort_unstable();
+        for pair in places.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            let [before, i] = [pair[0].1, pair[1].1];
+            let same = format!("it is that of boxes[{before}], and what begins in each other need not come apart");
+            add(format_args!("boxes[{i}].position"), Some(same));
+        }
     }
 
     /// A remark on what weighs too much for a sheet with thickness that hangs by some of its points and that it may come to lie on: in sub-steps of h it sinks
@@ -349,6 +378,13 @@ impl SceneFile {
         };
         strands.turning[end] != 0.0 && !strands.held[end] && strands.strands().all(is_loose)
     }
+}
+
+/// A remark on a triangle without an area.
+fn thin(shape: &Shape<String>) -> Option<String> {
+    let Shape::Triangle(triangle) = shape else { return None };
+    let [a, b, c] = triangle.corners;
+    ((b - a).cross(c - a) == Vec3::ZERO).then(|| "its corners lie on a line, so nothing hits it".into())
 }
 
 /// The bounds of a shape that needs no file and is finite.

@@ -57,9 +57,10 @@ impl Scene<'_> {
         Some((self.steady()?, drift))
     }
 
-    /// The sub-steps of a step that begins at an instant and takes some time.
+    /// The sub-steps of a step that begins at an instant and takes some time: none of them takes none, if the step takes some.
     pub(super) fn parts(&self, [now, dt]: [Time; 2]) -> impl Iterator<Item = Substep> + use<> {
-        let (mut from, count) = (now, self.pieces());
+        let most = u32::try_from(dt.ticks()).unwrap_or(u32::MAX).max(1);
+        let (mut from, count) = (now, self.pieces().min(most));
         (0..count).map(move |number| {
             let to = now + dt.part(number + 1, count);
             Substep { during: [core::mem::replace(&mut from, to), to], number, count, step: dt }

@@ -28,13 +28,13 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     kept.pushed[..len].copy_from_slice(bodies.velocity);
     kept.thrown[..len].copy_from_slice(bodies.velocity);
     kept.borne[..len].fill(Vec3::ZERO);
-    kept.round[..len].fill(0);
     kept.lists.hardest = 0.0;
     let [x, v] = bodies.before;
     for (row, drift) in kept.drift[..len].iter_mut().enumerate() {
         *drift = bodies.position[row] - x[row] - (v[row] + bodies.velocity[row]) * (0.5 * h);
     }
-    kept.lists.driven = driven(bodies);
+    kept.lists.driven = driven(bodies, kept);
+    kept.round[..len].fill(0);
     let (mut pass, pairs, faces) = Pass::of(bodies, kept, compliance);
     for face in faces {
         pass.move_from_face(face);
@@ -44,11 +44,16 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     }
 }
 
-/// By how much forces from outside have changed the velocity of all together \[m/s\]: the mean by mass, in which what two do to each other is
-/// nothing, and so is what may be rounding. Else contacts would take that for weight, and share it out otherwise than momentum asks for.
-fn driven(bodies: &Bodies<'_>) -> Vec3 {
+/// By how much forces from outside have changed the velocity of all together that may touch something \[m/s\]: the mean by mass, in which what two do to each other is
+/// nothing, and so is what may be rounding. Else contacts would take that for weight, and share it out otherwise than momentum asks for. What others go
+/// through is nothing to those.
+fn driven(bodies: &Bodies<'_>, kept: &mut Kept<'_>) -> Vec3 {
     let (mut sum, mut whole, mut sizes) = (Vec3::ZERO, 0.0, 0.0);
-    for (row, &mass) in bodies.mass.iter().enumerate() {
+    let touches = &mut kept.round[..bodies.len()];
+    touches.fill(0);
+    kept.pairs[..kept.lists.pairs as usize].iter().flat_map(|pair| pair.rows).for_each(|row| touches[row as usize] = 1);
+    kept.faces[..kept.lists.faces as usize].iter().for_each(|face| touches[face.row as usize] = 1);
+    for (row, &mass) in bodies.mass.iter().enumerate().filter(|&(row, _)| touches[row] != 0) {
         let [now, before] = [bodies.velocity[row], bodies.before[1][row]];
         let change = (now - before) * mass;
         // A particle that is no longer finite must not reach the others before it is taken out.

@@ -17,6 +17,8 @@ use glam::{Mat3, Vec3};
 const CLOSE: f32 = 0.25;
 /// How far forces drive a body in a sub-step at the most for that to make no difference to how far it is looked around it, as a share likewise.
 const DRIVEN: f32 = 0.1;
+/// How much higher than the deepest a place is that holds a body least, as a share likewise.
+const HIGH: f32 = 0.25;
 /// Parts of the scenery that a piece may touch elsewhere than by its corners, at the most.
 const PARTS: usize = 16;
 /// Triangles of a mesh that are one of them, at the most.
@@ -500,17 +502,22 @@ impl Visit<'_> {
     }
 }
 
-/// Leaves out one of four points on a face for another spot; tells whether it is not that which holds the body least. What has more corners or
-/// feet there stands on those that are farthest from each other, and rocks on the deepest.
+/// Leaves out one of four points on a face for another spot; tells whether it is not that which holds the body least: the highest if it is much higher than
+/// the deepest, as where a body comes down fast. What has more corners or feet there stands on those that are farthest from each other, and rocks on the deepest.
 #[inline(never)]
 fn make_room(slot: &mut Manifold, body: &Body, spot: Spot) -> bool {
     let mut spots = Spots::new();
     let at = |point: &Point| [point.places[0], body.point(point.places[1])];
     slot.points().iter().for_each(|point| push(&mut spots, at(point)));
     push(&mut spots, spot);
+    let gap = |[on, over]: &Spot| dot(slot.normal, *over - *on);
+    let [least, most] =
+        spots.iter().map(gap).fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [min(a, x), max(b, x)]);
+    let is_uneven = most - least > HIGH * body.least();
     let best = four(slot.normal, &spots);
+    let stays = |spot: Spot| if is_uneven { gap(&spot) < most } else { best.contains(&spot) };
     let (mut kept, mut count) = (slot.points, 0);
-    for point in slot.points().iter().filter(|point| best.contains(&at(point))) {
+    for point in slot.points().iter().filter(|point| stays(at(point))) {
         kept[count] = *point;
         count += 1;
     }

@@ -2,7 +2,12 @@
 
 use super::super::contacts::{TangentImpulse, Touch};
 use super::closest::Kind;
+use crate::math::max;
 use glam::Vec3;
+
+/// How much farther a corner may be pushed than what touches has to part, at the most: where all others are fixed, and its share in the place that touches is
+/// small, more would throw it away.
+const LEVER: f32 = 4.0;
 
 /// A point and a triangle, or two edges, that are kept apart.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -43,6 +48,17 @@ impl Contact {
     pub(super) fn sides(&self) -> [usize; 2] {
         let second = if self.split == Kind::PointTriangle.split() as u32 { 1 } else { 2 };
         [self.corners[0] as usize, self.corners[second] as usize]
+    }
+
+    /// How far the two move apart by a unit push \[1/kg\], or count as doing so: no less than a share of how far that moves any corner. Zero if none of them
+    /// can be moved.
+    pub(super) fn ease(&self, weight: &[f32]) -> f32 {
+        let parts = self.corners.iter().zip(self.weights);
+        let [parting, moving] = parts.fold([0.0, 0.0], |[sum, most], (&corner, share)| {
+            let weight = weight[corner as usize];
+            [sum + share * share * weight, max((share * weight).abs(), most)]
+        });
+        max(parting, moving * (1.0 / LEVER))
     }
 
     /// The weighted sum of something of its corners: how the first differs from the second in it.

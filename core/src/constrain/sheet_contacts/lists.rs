@@ -72,6 +72,8 @@ pub(super) struct Work<'m> {
     /// What each is bound to where sheets move as one, and 1 for whom the scenery holds.
     pub(super) zone: &'m mut [u32],
     pub(super) held: &'m mut [u32],
+    /// The lowest of those whose sheets have come to touch each other in the sub-step.
+    pub(super) group: &'m mut [u32],
     /// The contacts of before.
     pub(super) old: &'m mut [Contact],
     /// How far each has left the way that lists expect \[m\].
@@ -100,7 +102,7 @@ pub(super) fn demand([particles, triangles]: [usize; 2]) -> Demand {
     let lasting = sum([words::<Counts>(), each(particles, 7), edges]).fixed;
     let step = sum([lasting.saturating_add(near::words(particles)), contacts, surfaces]);
     let learning = sum([0, each(particles, LEARNING[0]), each(triangles, LEARNING[1])]);
-    let working = sum([each(particles, 19), contacts, tree::words([particles, triangles])]);
+    let working = sum([each(particles, 20), contacts, tree::words([particles, triangles])]);
     Demand { kept, step, scratch: learning.or(working), ..Demand::NONE }
 }
 
@@ -135,7 +137,7 @@ impl<'m> Work<'m> {
         let mut rest = scratch;
         let [now, from, arm, moved, searched] = core::array::from_fn(|_| take_vectors(&mut rest, particles));
         let [room_of, strays] = core::array::from_fn(|_| bytemuck::cast_slice_mut(take(&mut rest, particles)));
-        let [zone, held] = core::array::from_fn(|_| take(&mut rest, particles));
+        let [zone, held, group] = core::array::from_fn(|_| take(&mut rest, particles));
         let old = take(&mut rest, room(particles)[0] * words::<Contact>());
         let old = bytemuck::try_cast_slice_mut(old).ok()?;
         if rest.len() < tree::words([particles, triangles]) {
@@ -150,6 +152,7 @@ impl<'m> Work<'m> {
             room: room_of,
             zone,
             held,
+            group,
             old,
             strays,
             tree: Tree::of(&mut rest, [particles, triangles]),

@@ -167,8 +167,9 @@ where
     fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let Some(rest) = Rest::of(share.kept.fixed, self.counts()).filter(Rest::is_known) else { return };
         let Some(mut kept) = Kept::of(share.step, self.counts()).filter(|_| !rest.faces.is_empty()) else { return };
+        let Some(mut work) = Work::of(share.scratch, self.counts()) else { return };
         if bodies.substep.seconds() > 0.0 {
-            settle::settle(&mut kept, bodies);
+            settle::settle(&rest, &mut kept, &mut work, bodies);
         }
     }
 }

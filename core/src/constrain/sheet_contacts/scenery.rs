@@ -8,7 +8,6 @@ use super::rest::Rest;
 use crate::material::on_surface;
 use crate::math::{high, length, low, max, min};
 use crate::shape::{Aabb, Contact, Segment};
-use glam::Vec3;
 
 /// Sub-steps ahead that a search of the scenery looks, at the most.
 const AHEAD: u32 = 8;
@@ -22,7 +21,7 @@ const LOST: u32 = 1;
 const LISTED: u32 = 2;
 
 /// Lists the faces that particles may touch in the sub-step. Who has been found to be far from all is not asked again before it has gone
-/// that far.
+/// that far, if nothing there moves.
 pub(super) fn gather(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &Work<'_>, bodies: &mut Bodies<'_>) {
     kept.counts.surfaces = 0;
     if bodies.substep.number == 0 {
@@ -42,7 +41,7 @@ pub(super) fn gather(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &Work<'_>, bodi
         let (half, way) = (rest.half[i], length(work.now[i] - work.from[i]));
         // Others may push it as far again.
         let near = 2.0 * (half + way);
-        if kept.clear[i] < near {
+        if kept.clear[i] < near || bodies.colliders.moves() {
             kept.clear[i] = near + ahead * way;
             look(kept, (i, row as usize), [half, near], work, bodies);
         }
@@ -63,8 +62,7 @@ fn look(
     let reach = kept.clear[i];
     bodies.colliders.contacts(from, reach, bodies.substep.during[0], &mut |contact: &Contact| {
         let Contact { point, normal, distance, velocity, material, .. } = *contact;
-        // What moves is asked again in every sub-step.
-        kept.clear[i] = if velocity == Vec3::ZERO { min(distance, kept.clear[i]) } else { 0.0 };
+        kept.clear[i] = min(distance, kept.clear[i]);
         if !(distance < near) || !normal.is_finite() {
             return;
         }
@@ -93,6 +91,11 @@ fn look(
             tangent: bytemuck::Zeroable::zeroed(),
         };
     });
+}
+
+/// Tells whether a face is listed near a particle in the sub-step.
+pub(super) fn is_near(kept: &Kept<'_>, i: usize) -> bool {
+    kept.followed[i] & LISTED != 0
 }
 
 /// Puts whoever has been pushed too near to a face, or past another, back to where it was, as seen from that. Tells whether somebody has been.
@@ -137,7 +140,7 @@ pub(super) fn follow(kept: &mut Kept<'_>, work: &Work<'_>, bodies: &mut Bodies<'
         }
     }
     for i in 0..kept.rows.len() {
-        let (row, listed) = (kept.rows[i], kept.followed[i] & LISTED != 0);
+        let (row, listed) = (kept.rows[i], is_near(kept, i));
         if row == NOBODY || !(kept.weight[i] > 0.0) || kept.followed[i] & LOST != 0 {
             continue;
         }

@@ -27,6 +27,7 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
     bodies.report.effort.streamed += u64::from(astray.is_none() && !has_room);
     bodies.report.caps.contacts += found.lost;
     let contacts = &mut kept.contacts[..found.count];
+    let meetings = found.meetings - let_be(contacts, kept.weight);
     arrange(contacts, bytemuck::cast_slice_mut(work.searched));
     let count = thin(contacts, work.now);
     kept.counts.contacts = count as u32;
@@ -39,7 +40,13 @@ pub(super) fn search(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, 
             None => contact.touch = touch(bodies, contact.sides().map(|side| kept.rows[side] as usize)),
         }
     }
-    found.meetings
+    meetings
+}
+
+/// Says of those that would pass each other and can do nothing about it, since all of them is fixed, that they do not; returns their number.
+fn let_be(contacts: &mut [Contact], weight: &[f32]) -> u32 {
+    let stuck = contacts.iter_mut().filter(|contact| contact.meets() && !(contact.ease(weight) > 0.0));
+    stuck.map(|contact| contact.meets = 0).count() as u32
 }
 
 /// The numbers of what a search finds: contacts, those that find no room, and those who would pass each other.

@@ -3,11 +3,10 @@
 use super::super::Bodies;
 use super::super::contacts::{Touch, bounce};
 use super::contact::{Contact, Surface};
-use super::lists::{Kept, NOBODY};
-use super::solver::ease;
-use super::tell;
-use super::zones::{LITTLE, Whole};
-use crate::math::{aside, length, min};
+use super::lists::{Kept, Work};
+use super::rest::{Rest, root};
+use super::{tell, zones};
+use crate::math::{aside, min};
 use glam::Vec3;
 
 /// Passes over all contacts.
@@ -17,13 +16,19 @@ const SLACK: f32 = 1e-3;
 
 /// Lets what touches part as fast as its elasticity wants, and no faster; then friction by all that presses, here and by position. What it
 /// took by what turns out to press less it gives back, so that methods that leave half of the pressure to this are held as others.
-pub(super) fn settle(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
-    let mut torque = Vec3::ZERO;
-    for pass in 0..PASSES {
-        torque += press(kept, bodies, pass == 0);
-        torque += rub(kept, bodies);
+pub(super) fn settle(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>, bodies: &mut Bodies<'_>) {
+    zones::part(rest, work);
+    zones::join(kept, work);
+    for i in 0..work.group.len() {
+        (work.group[i], work.moved[i]) = (root(work.group, i as u32), Vec3::ZERO);
     }
-    keep_spin(kept, bodies, torque);
+    let (group, torques) = (&*work.group, &mut *work.moved);
+    let mut turn = |contact: &Contact, torque: Vec3| torques[group[contact.corners[0] as usize] as usize] += torque;
+    for pass in 0..PASSES {
+        press(kept, bodies, pass == 0, &mut turn);
+        rub(kept, bodies, &mut turn);
+    }
+    zones::settle_spin(kept, work, bodies);
     tell::tell(kept, bodies);
     count(kept, bodies);
 }
@@ -39,8 +44,7 @@ fn count(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) {
     }
 }
 
-fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool) -> Vec3 {
-    let mut torque = Vec3::ZERO;
+fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool, turn: &mut impl FnMut(&Contact, Vec3)) {
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
     for leaning in [false, true] {
         for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.leans() == leaning) {
@@ -55,7 +59,7 @@ fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool) -> Vec3 {
                 wanted = min(parting + most, wanted);
             }
             let by = normal * (contact.touch.press(wanted, parting) / ease);
-            torque += push(contact, kept.rows, kept.weight, bodies, by);
+            turn(contact, push(contact, kept.rows, kept.weight, bodies, by));
         }
     }
     for surface in &mut kept.surfaces[..surfaces] {
@@ -69,25 +73,22 @@ fn press(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, first: bool) -> Vec3 {
             bodies.velocity[row] += normal * change;
         }
     }
-    torque
 }
 
-/// Takes from the slip of all what friction can by all that has pressed them; returns the moment of that.
-fn rub(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>) -> Vec3 {
-    let mut torque = Vec3::ZERO;
+/// Takes from the slip of all what friction can by all that has pressed them.
+fn rub(kept: &mut Kept<'_>, bodies: &mut Bodies<'_>, turn: &mut impl FnMut(&Contact, Vec3)) {
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
     for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.tangent.acts(&contact.touch)) {
         let Some(ease) = ease_of(contact, kept.rows, kept.weight, bodies) else { continue };
         let slip = aside(contact.between(|i| bodies.velocity[kept.rows[i] as usize]), contact.normal);
         let by = contact.tangent.hold(&contact.touch, slip, contact.touch.pressed()) / ease;
-        torque += push(contact, kept.rows, kept.weight, bodies, by);
+        turn(contact, push(contact, kept.rows, kept.weight, bodies, by));
     }
     for surface in kept.surfaces[..surfaces].iter_mut().filter(|surface| surface.tangent.acts(&surface.touch)) {
         let row = kept.rows[surface.particle as usize] as usize;
         let slip = aside(bodies.velocity[row] - surface.velocity, surface.normal);
         bodies.velocity[row] += surface.tangent.hold(&surface.touch, slip, surface.touch.pressed());
     }
-    torque
 }
 
 /// How fast two that touch part by a unit push \[1/kg\].
@@ -95,7 +96,7 @@ fn ease_of(contact: &Contact, rows: &[u32], weight: &[f32], bodies: &Bodies<'_>)
     let far = || contact.between(|i| bodies.position[rows[i] as usize]).dot(contact.normal);
     let pushes = contact.touch.pressed() > 0.0 || contact.tangent.acts(&contact.touch);
     let touches = pushes || !contact.leans() && far() < contact.target * (1.0 + SLACK);
-    Some(ease(contact, weight)).filter(|&ease| touches && ease > 0.0)
+    Some(contact.ease(weight)).filter(|&ease| touches && ease > 0.0)
 }
 
 fn touches(surface: &Surface, place: Vec3) -> bool {
@@ -110,32 +111,4 @@ fn push(contact: &Contact, rows: &[u32], weight: &[f32], bodies: &mut Bodies<'_>
         bodies.velocity[rows[i] as usize] += by * (share * weight[i]);
     }
     contact.between(|i| bodies.position[rows[i] as usize]).cross(by)
-}
-
-/// Turns all sheets together by what pushes would change of their angular momentum that do not go along the line between two, where nothing else
-/// holds them.
-fn keep_spin(kept: &Kept<'_>, bodies: &mut Bodies<'_>, torque: Vec3) {
-    let living = |(&row, &weight): (&u32, &f32)| (row != NOBODY).then_some((row as usize, weight));
-    let members = || kept.rows.iter().zip(&*kept.weight).filter_map(living);
-    let Some((origin, _)) = members().next().filter(|_| torque != Vec3::ZERO) else { return };
-    if kept.counts.surfaces > 0 || members().any(|(_, weight)| weight == 0.0) {
-        return;
-    }
-    let origin = bodies.position[origin];
-    let (mass, middle) = members().fold((0.0, Vec3::ZERO), |(mass, middle), (row, weight)| {
-        (mass + 1.0 / weight, middle + (bodies.position[row] - origin) / weight)
-    });
-    let middle = origin + middle / mass;
-    let mut whole = Whole::of(torque);
-    for (row, weight) in members() {
-        let arm = bodies.position[row] - middle;
-        whole.add(arm, arm, 1.0 / weight, Vec3::ZERO);
-    }
-    let turn = whole.turn();
-    if length(turn) * bodies.substep.seconds() > LITTLE {
-        return;
-    }
-    for (row, _) in members() {
-        bodies.velocity[row] -= turn.cross(bodies.position[row] - middle);
-    }
 }

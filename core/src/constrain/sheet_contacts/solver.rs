@@ -30,6 +30,7 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
         near.part();
     }
     scenery::gather(rest, kept, work, bodies);
+    zones::part(rest, work);
     let h = bodies.substep.seconds();
     let mut safe = false;
     for round in 0..ROUNDS {
@@ -38,6 +39,7 @@ pub(super) fn project(rest: &Rest<'_>, kept: &mut Kept<'_>, work: &mut Work<'_>,
             safe = true;
             break;
         }
+        zones::join(kept, work);
         work.searched.copy_from_slice(work.now);
         for _ in 0..SWEEPS {
             taut::hold(kept, work);
@@ -100,7 +102,7 @@ fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) {
     // Points over triangles first: what leans pushes only where that leaves it too near.
     for leaning in [false, true] {
         for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.leans() == leaning) {
-            let ease = ease(contact, kept.weight);
+            let ease = contact.ease(kept.weight);
             let distance = contact.between(|i| work.now[i]).dot(contact.normal);
             let change = contact.touch.press(contact.target / h, distance / h) * h;
             if change != 0.0 && ease > 0.0 {
@@ -120,7 +122,7 @@ fn sweep(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) {
 fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) {
     let (contacts, surfaces) = (kept.counts.contacts as usize, kept.counts.surfaces as usize);
     for contact in kept.contacts[..contacts].iter_mut().filter(|contact| contact.tangent.acts(&contact.touch)) {
-        let ease = ease(contact, kept.weight);
+        let ease = contact.ease(kept.weight);
         let slip = aside(contact.between(|i| work.now[i] - work.from[i]), contact.normal);
         let load = contact.touch.pressed() - contact.recovery / h;
         let change = contact.tangent.hold(&contact.touch, slip / h, load) * h;
@@ -134,12 +136,6 @@ fn rub(kept: &mut Kept<'_>, work: &mut Work<'_>, h: f32) {
         let load = surface.touch.pressed() - surface.recovery / h;
         work.shift(i, surface.tangent.hold(&surface.touch, slip, load) * h);
     }
-}
-
-/// How far two move apart by a unit push \[1/kg\].
-pub(super) fn ease(contact: &Contact, weight: &[f32]) -> f32 {
-    let parts = contact.corners.iter().zip(contact.weights);
-    parts.fold(0.0, |sum, (&corner, share)| sum + share * share * weight[corner as usize])
 }
 
 /// Pushes two apart by equal and opposite pushes.

@@ -80,8 +80,8 @@ use words::structs;
 /// press that stand still gains no more than forces do on its way and a thousandth in a sub-step (what bending alone gives is not looked for), but for what
 /// the elasticity of its hits gives back: what would be too much is taken of its way, but for how all of it goes along smooth walls. What is fixed
 /// somewhere, or pressed by what moves, has no such bound. That
-/// holds for each piece that hangs together by triangles and folds, from the beginning or when it has been torn: none takes what another has. In a
-/// periodic room a piece has to be smaller than half a side for that. Whoever is fixed stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing, and is counted in [`Caps`](crate::Caps).
+/// holds for each piece that hangs together by triangles and folds, from the beginning or when it has been torn: none takes what another has.
+/// It does not act through the sides of a periodic room. Whoever is fixed stays. Where a particle has died, its triangles and folds are gone. What is degenerate at rest does nothing, and is counted in [`Caps`](crate::Caps).
 ///
 /// [`Observer`](crate::Observer)s are told of particles that come together with the scenery ([`touched`](crate::Observer::touched)), once, as that begins.
 ///

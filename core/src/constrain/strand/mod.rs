@@ -53,7 +53,7 @@ use piece::{EQUATIONS, Piece, Step, TURN, Writer, act};
 /// deforms, where the strain of what is stiffer than it takes to be brought to its shape in a sub-step counts for no more than that. What swings
 /// so fast that a sub-step does not resolve it fades: a motion of angular frequency ω by (ω h)²/2 in a sub-step h. Where something holds
 /// it and nothing turns its ends, what rounding leaves of the way of each point is kept, so that it bends far from the origin as near it; any other loses of how it deforms
-/// what goes slower than half a rounding of its coordinates in a sub-step, ε |x| / 2 h. In a periodic room a free strand has to be shorter than half a side.
+/// what goes slower than half a rounding of its coordinates in a sub-step, ε |x| / 2 h. It does not act through the sides of a periodic room.
 ///
 /// Whoever is fixed stays. Two neighbours that are both fixed clamp the strand: it leaves the second of them in their direction, and
 /// cannot turn about itself there, unless it is turned ([`turning`](Self::turning)); a single one is a hinge. What turns an end of a strand that nobody

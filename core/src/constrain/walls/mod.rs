@@ -96,7 +96,7 @@ pub(super) fn of(step: &mut [u32], count: usize) -> &mut [Wall] {
 }
 
 /// Finds the walls that particles may meet in the sub-step, and which of them press on where the method has moved these. Who is far from all is not
-/// asked again before it has gone that far.
+/// asked again before it has gone that far, if nothing there moves.
 pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>) {
     let Substep { number, count, .. } = bodies.substep;
     if number == 0 {
@@ -133,7 +133,7 @@ pub(super) fn gather(walls: &mut [Wall], particles: &[u32], bodies: &Bodies<'_>)
         // Whoever another constraint keeps off is followed by that, from farther away.
         let kept = bodies.clearance(row);
         let near = reach(max(kept, bodies.radius[row]), if kept > 0.0 { way } else { pushed });
-        if wall.clear < near {
+        if wall.clear < near || bodies.colliders.moves() {
             wall.clear = near + ahead * way;
             wall.look(near, bodies);
         }
@@ -265,8 +265,7 @@ impl Wall {
         bodies.colliders.contacts(from, self.clear, bodies.substep.during[0], &mut |contact: &Contact| {
             let contact = &as_before(contact, last);
             let Contact { point, normal, distance, velocity, slack, .. } = *contact;
-            // What moves is asked again in every sub-step.
-            self.clear = if velocity == Vec3::ZERO { min(distance, self.clear) } else { 0.0 };
+            self.clear = min(distance, self.clear);
             self.moves |= u32::from(velocity != Vec3::ZERO);
             free = min(distance - length(velocity) * h, free);
             if !(distance < near + 4.0 * slack + length(velocity) * h) || !normal.is_finite() || !counts(contact) {
