@@ -23,8 +23,8 @@ pub(crate) struct Convert {
 
 /// Converts a scene; warns of what the other format cannot say.
 pub(crate) fn convert(args: &Convert) -> Outcome {
-    let mut scene = load::declared(&args.from, args.reading.unknown())?;
-    scene.check().map_err(|error| error.in_file(&load::name(&args.from)))?;
+    let (mut scene, source) = load::declared(&args.from, args.reading.unknown())?;
+    scene.check().map_err(|error| source.told(error))?;
     rebase(&mut scene, folder(&args.from)?, folder(&args.to.0)?);
     let outs = Outs::create(std::slice::from_ref(&args.to), None)?;
     outs.write(|format| match format {

@@ -11,6 +11,7 @@ mod convert;
 mod formats;
 mod lab;
 pub mod load;
+mod locate;
 mod outcome;
 mod parse;
 mod progress;

@@ -1,8 +1,9 @@
 //! Scenes and meshes from disk.
 
 use crate::formats::{SceneFormat, format_of};
+use crate::locate::located;
 use crate::outcome::{Failure, Outcome, warn};
-use pointmass::scene::{self, SceneError, SceneFile, Unknown, read_scn_with};
+use pointmass::scene::{self, Model, SceneError, SceneFile, Unknown, read_scn_with};
 pub use pointmass_files::disk::Disk;
 pub(crate) use pointmass_files::disk::name;
 use pointmass_files::disk::text;
@@ -24,35 +25,61 @@ impl Reading {
     }
 }
 
+/// Where a scene was read from.
+pub(crate) struct Source {
+    name: String,
+    /// The text, where its values can be found by their paths.
+    json: Option<String>,
+}
+
+impl Source {
+    /// The scene, ready to run.
+    ///
+    /// # Errors
+    /// If a value cannot be used or a mesh cannot be read, with the file and the line of the value.
+    pub(crate) fn model(&self, file: &SceneFile) -> Result<Model, SceneError> {
+        Model::load(file, &self.name, &mut Disk).map_err(|error| self.told(error))
+    }
+
+    /// An error in the scene with the file, and the line of the value that it names.
+    pub(crate) fn told(&self, error: SceneError) -> SceneError {
+        let error = error.in_file(&self.name);
+        match &self.json {
+            Some(json) if error.file == self.name => located(error, json),
+            _ => error,
+        }
+    }
+}
+
 /// Reads a scene file and prints its warnings.
 ///
 /// # Errors
 /// If it cannot be read, with file, line and column where there are such.
 pub fn scene(path: &Path) -> Outcome<SceneFile> {
-    scene_with(path, Unknown::Refuse)
+    Ok(scene_with(path, Unknown::Refuse)?.0)
 }
 
-/// The same, which may pass over commands that are `unknown` in `.scn`.
+/// The same, which may pass over commands that are `unknown` in `.scn`, and where it was read from.
 ///
 /// # Errors
 /// As of [`scene()`].
-pub fn scene_with(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
-    let scene::Reading { scene, warnings, remarks } = read(path, unknown)?;
+pub(crate) fn scene_with(path: &Path, unknown: Unknown) -> Outcome<(SceneFile, Source)> {
+    let (scene::Reading { scene, warnings, remarks }, source) = read(path, unknown)?;
     warn(&[warnings, remarks].concat());
-    Ok(scene)
+    Ok((scene, source))
 }
 
 /// The same for those who only translate it, without remarks on what it says.
 ///
 /// # Errors
 /// As of [`scene()`].
-pub fn declared(path: &Path, unknown: Unknown) -> Outcome<SceneFile> {
-    let scene::Reading { scene, warnings, .. } = read(path, unknown)?;
+pub(crate) fn declared(path: &Path, unknown: Unknown) -> Outcome<(SceneFile, Source)> {
+    let (scene::Reading { scene, warnings, .. }, source) = read(path, unknown)?;
     warn(&warnings);
-    Ok(scene)
+    Ok((scene, source))
 }
 
-fn read(path: &Path, unknown: Unknown) -> Outcome<scene::Reading> {
+fn read(path: &Path, unknown: Unknown) -> Outcome<(scene::Reading, Source)> {
     let format = format_of::<SceneFormat>(path);
     if format.is_none() && path.is_file() && !is_standard(path) {
         let path = path.display();
@@ -62,12 +89,14 @@ fn read(path: &Path, unknown: Unknown) -> Outcome<scene::Reading> {
     // A pipe and standard input have no name to tell by.
     let is_json = format.map_or_else(|| text.trim_start().starts_with('{'), |format| format == SceneFormat::Json);
     if !is_json {
-        return Ok(read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?);
+        let reading = read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?;
+        return Ok((reading, Source { name: name.into_owned(), json: None }));
     }
     let scene = SceneFile::from_json(&name, &text)?;
     let remarks = SceneFile::former_names(&text).into_iter().chain(scene.remarks());
     let remarks = remarks.map(|remark| format!("{name}:{remark}")).collect();
-    Ok(scene::Reading { scene, warnings: Vec::new(), remarks })
+    let source = Source { name: name.into_owned(), json: Some(text) };
+    Ok((scene::Reading { scene, warnings: Vec::new(), remarks }, source))
 }
 
 /// How to go on where a command is unknown.

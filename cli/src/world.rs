@@ -1,7 +1,7 @@
 //! A scene in motion: the system, the scene it steps through, and the settings of the run.
 
 use crate::check::Bounds;
-use crate::load::{self, Disk, Reading};
+use crate::load::{self, Reading};
 use crate::outcome::{Failure, Outcome, warn};
 use crate::parse::{natural, number, seconds, step};
 use crate::stage::size;
@@ -106,7 +106,7 @@ const WORTH_THREADS: usize = 4096;
 impl World {
     /// Loads the scene and puts in what it begins with.
     pub(crate) fn load(args: &Settings) -> Outcome<Self> {
-        let mut file = load::scene_with(&args.scene, args.reading.unknown())?;
+        let (mut file, source) = load::scene_with(&args.scene, args.reading.unknown())?;
         let run = &mut file.run;
         run.integrator = args.integrator.unwrap_or(run.integrator);
         if let Some(tolerance) = args.tolerance.filter(|_| run.integrator.chooses_steps()) {
@@ -123,7 +123,7 @@ impl World {
         if let Some(name) = args.response.as_deref() {
             file.contacts = respond(&file, name, dt);
         }
-        let model = Model::load(&file, &load::name(&args.scene), &mut Disk)?;
+        let model = source.model(&file)?;
         if !model.has_balls() && file.contacts.is_some() {
             let said = if args.response.is_some() { "--response" } else { "contacts" };
             warn(&[format!("{said} does nothing: no particle of the scene has a radius")]);

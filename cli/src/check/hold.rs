@@ -23,7 +23,7 @@ const PILE: usize = 10;
 /// that on.
 const FALLS: f64 = 0.09;
 /// The turn of a box in a sub-step from which on it may be met too late \[rad\].
-const TURN: f64 = 0.35;
+const TURN: f64 = 0.5;
 
 /// By how much a pile of so many boxes sinks where it does so most, for each m/s² of gravity and s² of a sub-step \[m\]: as measured
 /// within a twentieth of what three to twenty do, and two.

@@ -31,7 +31,7 @@ mod world;
 pub(crate) use bounds::Bounds;
 
 use crate::formats::{Said, StudyFormat, json, line, named};
-use crate::load::{self, Disk, Reading};
+use crate::load::{self, Reading};
 use crate::outcome::{Outcome, print};
 use crate::parse::step;
 use crate::report::origin::Origin;
@@ -42,7 +42,6 @@ use crate::stall;
 use modes::Spectrum;
 use plot::Scenery;
 use pointmass::Method;
-use pointmass::scene::Model;
 use pointmass_files::whole::Outs;
 use std::path::PathBuf;
 use study::Study;
@@ -72,11 +71,11 @@ pub(crate) struct Check {
 
 /// Checks a scene as the arguments say. Files are written whole, at the end, or not at all.
 pub(crate) fn check(args: &Check) -> Outcome {
-    let mut file = load::scene_with(&args.scene, args.reading.unknown())?;
+    let (mut file, source) = load::scene_with(&args.scene, args.reading.unknown())?;
     let run = &mut file.run;
     run.integrator = args.integrator.unwrap_or(run.integrator);
     run.dt = args.dt.unwrap_or(run.dt);
-    let model = Model::load(&file, &load::name(&args.scene), &mut Disk)?;
+    let model = source.model(&file)?;
     let outs = Outs::create(&args.out, [&args.scene])?;
     let (mut study, spectra) = Study::of(&args.scene, &model, &file.run);
     study.advice = advice::advise(&study, &model);

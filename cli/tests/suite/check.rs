@@ -178,7 +178,8 @@ fn boxes_that_turn_far_where_they_fall_are_remarked_on() {
     for (side, rate, substeps, is_told) in [
         (0.016, 24.0, 1, true),
         (0.016, 60.0, 1, true),
-        (0.1, 24.0, 3, true),
+        (0.1, 24.0, 2, true),
+        (0.1, 24.0, 3, false),
         (0.016, 60.0, 6, false),
         (0.5, 60.0, 2, false),
     ] {

@@ -134,6 +134,22 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             "a.json:contacts.force.friction.static: 0 is below kinetic, 1",
         ),
         (
+            r#"{"particles": [{}, {}], "springs": [{"ends": [0, 1], "rest_length": 1, "ks": -5, "kd": 0}]}"#.into(),
+            "a.json:springs[0].ks: -5 is below 0",
+        ),
+        (
+            r#"{"boxes": [{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0], "count": [1, 2, 1], "spacing": [1, 0, 1]}]}"#.into(),
+            "a.json:boxes[0].spacing: 0 along y puts them into each other",
+        ),
+        (
+            r#"{"boxes": [{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0]}, {"sides": [2, 1, 1], "mass": 1, "position": [-0.0, 0, 0]}]}"#.into(),
+            "a.json:boxes[1].position: it is that of boxes[0]",
+        ),
+        (
+            r#"{"scenery": [{"shape": {"triangle": {"corners": [[0, 0, 0], [1, 1, 1], [2, 2, 2]]}}}]}"#.into(),
+            "a.json:scenery[0].shape.triangle: its corners lie on a line",
+        ),
+        (
             r#"{"particles": [{}, {}], "constraints": [{"distance": {"ends": [1, 1], "length": 1}}]}"#.into(),
             "a.json:constraints[0].distance.ends: it holds particle 1 to itself",
         ),
