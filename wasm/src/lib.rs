@@ -41,9 +41,9 @@ const PARTICLE: &str = r#"
 /** A particle as `World.spawn` takes it: an entry of a scene's list `particles`. */
 export interface Particle {
     /** Where it is [m]; [0, 0, 0], where nothing is said. */
-    position?: ArrayLike<number>;
+    position?: readonly number[] | Float32Array | Float64Array;
     /** How it moves [m/s]; [0, 0, 0]. */
-    velocity?: ArrayLike<number>;
+    velocity?: readonly number[] | Float32Array | Float64Array;
     /** Its radius [m]; 0, a point. */
     radius?: number;
     /** Its mass [kg], above zero; 1. */
@@ -61,7 +61,7 @@ export interface Particle {
     /** The number of its material in the scene, from 0; none. */
     material?: number;
     /** Red, green, blue and opacity, 0 to 255; those of its material. */
-    color?: ArrayLike<number>;
+    color?: readonly number[] | Float32Array | Float64Array;
 }
 "#;
 
@@ -79,6 +79,8 @@ pub fn version() -> String {
 #[derive(Debug)]
 pub struct World {
     model: Model,
+    /// How far each of its pushes between balls reaches, for those that the scene has \[m\].
+    reaches: Vec<f32>,
     state: State,
     saved: Saved,
     blows: Blows,
@@ -115,6 +117,13 @@ impl World {
     fn go_to(&mut self, end: Time) {
         self.state.system.step_to_observed(&self.model.scene(), end, self.blows.observer());
         self.remember();
+    }
+
+    /// Lets pushes between balls reach as far as those need that the scene has, and that have been put in.
+    fn reach_all(&mut self) {
+        for (push, &reach) in self.model.forces.2.iter_mut().zip(&self.reaches) {
+            push.reach = reach.max(self.state.widest);
+        }
     }
 
     /// Lets trails remember where everybody is.
@@ -167,9 +176,10 @@ impl World {
         let covered = draw::covered(&model);
         let (seed, light) = (seed.unwrap_or(file.run.seed), file.light_on_strands(Vec3::ZERO));
         let clock = Clock::new(file.run.dt);
-        let state = State { system, clock, rings, knots };
+        let state = State { system, clock, widest: 0.0, rings, knots };
+        let reaches = model.forces.2.iter().map(|push| push.reach).collect();
         let (saved, blows) = (Saved::default(), Blows::default());
-        let mut world = Self { model, state, saved, blows, seed, warnings, light, covered };
+        let mut world = Self { model, reaches, state, saved, blows, seed, warnings, light, covered };
         world.restart()?;
         Ok(world)
     }
@@ -181,7 +191,8 @@ impl World {
     pub fn restart(&mut self) -> Result<(), JsError> {
         memory::room_for_little()?;
         self.state.system.start(&self.model.scene(), self.seed)?;
-        self.state.clock = Clock::new(self.state.clock.dt);
+        (self.state.clock, self.state.widest) = (Clock::new(self.state.clock.dt), 0.0);
+        self.reach_all();
         self.state.rings.fill(Ring::NONE);
         self.blows.clear();
         self.remember();
@@ -265,6 +276,7 @@ impl World {
     /// If no state of that number is saved.
     pub fn restore(&mut self, #[wasm_bindgen(unchecked_param_type = "number")] state: &JsValue) -> Result<(), JsError> {
         self.saved.restore(arguments::state(state)?, &mut self.state)?;
+        self.reach_all();
         self.blows.clear();
         Ok(())
     }
@@ -352,10 +364,12 @@ impl World {
     ) -> Result<Option<u32>, JsError> {
         let text = arguments::particle(particle)?;
         let particle = scene::particle(&text, &mut self.model)?;
-        for push in &mut self.model.forces.2 {
-            push.reach = push.reach.max(2.0 * particle.radius);
+        let id = self.state.system.spawn(&particle).ok().map(Id::serial);
+        if id.is_some() {
+            self.state.widest = self.state.widest.max(2.0 * particle.radius);
+            self.reach_all();
         }
-        Ok(self.state.system.spawn(&particle).ok().map(Id::serial))
+        Ok(id)
     }
 
     /// Takes a particle out, by its id out of `ids` or `spawn`; returns whether it was alive. Rows change as when one dies.
@@ -466,8 +480,9 @@ impl World {
     /// If these are not three finite numbers each, or there is not enough memory.
     pub fn sprites(
         &self,
-        #[wasm_bindgen(unchecked_param_type = "ArrayLike<number>")] eye: &JsValue,
-        #[wasm_bindgen(unchecked_optional_param_type = "ArrayLike<number> | null")] up: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "readonly number[] | Float32Array | Float64Array")] eye: &JsValue,
+        #[wasm_bindgen(unchecked_optional_param_type = "readonly number[] | Float32Array | Float64Array | null")]
+        up: &JsValue,
     ) -> Result<Float32Array, JsError> {
         let up = if up.is_undefined() || up.is_null() { Vec3::Y } else { place("up", up)? };
         let (view, scene) = (View { eye: place("eye", eye)?, up }, self.model.scene());
@@ -508,7 +523,7 @@ impl World {
     /// If that is not three finite numbers, or there is not enough memory.
     pub fn strands(
         &self,
-        #[wasm_bindgen(unchecked_param_type = "ArrayLike<number>")] eye: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "readonly number[] | Float32Array | Float64Array")] eye: &JsValue,
     ) -> Result<Float32Array, JsError> {
         let light = StrandLight { eye: place("eye", eye)?, ..self.light };
         draw::strands_of(&self.state.system.state(&self.model.scene()), &self.model, &light)

@@ -67,6 +67,13 @@ pub(crate) fn of_place(text: &str, place: &str) -> Option<String> {
     Some(path(text, column))
 }
 
+/// The path of the text that ends last before such a place.
+pub(crate) fn before_quote(text: &str, place: &str) -> Option<String> {
+    let column: usize = place.strip_prefix("1:")?.parse().ok()?;
+    let close = text.get(..column.min(text.len()))?.rfind('"')?;
+    Some(path(text, close + 1))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,6 +93,14 @@ mod tests {
         assert_eq!(at(r#"{"a":[1,|[2]]}"#), "a[1]");
         assert_eq!(at(r#"{"a":7,"b":|{}}"#), "b");
         assert_eq!(at(r#"{"a":7,|"b":{}}"#), "");
+    }
+
+    #[test]
+    fn names_alone_are_where_they_end() {
+        assert_eq!(before_quote(r#"{"forces":[{"drag":{}},"drag",{"a":1}]}"#, "1:30").as_deref(), Some("forces[1]"));
+        assert_eq!(before_quote(r#"{"contacts":"impulse"}"#, "1:22").as_deref(), Some("contacts"));
+        assert_eq!(before_quote(r#"{"forces":["drag"]}"#, "1:18").as_deref(), Some("forces[0]"));
+        assert_eq!(before_quote("{}", "1:2"), None);
     }
 
     #[test]

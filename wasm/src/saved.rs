@@ -11,6 +11,8 @@ use wasm_bindgen::prelude::*;
 pub(crate) struct State {
     pub(crate) system: System<Heap>,
     pub(crate) clock: Clock,
+    /// Twice the largest radius that has been put in \[m\].
+    pub(crate) widest: f32,
     /// The memory of trails, where some material leaves one.
     pub(crate) rings: Vec<Ring>,
     pub(crate) knots: Vec<Knot>,
@@ -22,13 +24,13 @@ impl State {
         const WHAT: &str = "one more state of the world";
         let system = self.system.try_clone().map_err(|_| memory::lacking(WHAT))?;
         let (rings, knots) = (memory::copied(&self.rings, WHAT)?, memory::copied(&self.knots, WHAT)?);
-        Ok(Self { system, clock: self.clock, rings, knots })
+        Ok(Self { system, clock: self.clock, widest: self.widest, rings, knots })
     }
 
     /// Becomes like another in the memory that it has.
     fn go_back(&mut self, other: &Self) {
         self.system.clone_from(&other.system);
-        self.clock = other.clock;
+        (self.clock, self.widest) = (other.clock, other.widest);
         self.rings.clone_from(&other.rings);
         self.knots.clone_from(&other.knots);
     }

@@ -39,6 +39,8 @@ impl Loaded {
                 (scene, [warnings, remarks].concat())
             }
         };
+        // What is no number that can be used needs no room.
+        file.check().map_err(|error| error.in_file(NAME))?;
         memory::room_to_build(&file, files)?;
         let model = Model::load(&file, NAME, files)?;
         Ok(Self { file, model, warnings })
@@ -68,13 +70,18 @@ fn remarks(file: &SceneFile, former: Vec<String>) -> Vec<String> {
     former.into_iter().chain(file.remarks()).map(|remark| format!("{NAME}:{remark}")).collect()
 }
 
+/// How a message begins about a name that stands alone.
+const ALONE: &str = "a name alone";
+
 /// An error in the text of an object, by its path there.
 fn in_object(text: &str, error: SceneError) -> SceneError {
     let SceneError { file, place, mut message } = error;
     for name in UNWRITTEN {
         message = message.replace(&format!("invalid type: string \"{name}\""), &format!("invalid value: {name}"));
     }
-    let place = path::of_place(text, &place).unwrap_or(place);
+    // Of a name that stands alone it is known only when what follows has been seen.
+    let shown = if message.starts_with(ALONE) { path::before_quote(text, &place) } else { None };
+    let place = shown.or_else(|| path::of_place(text, &place)).unwrap_or(place);
     SceneError { file, place, message }
 }
 
