@@ -567,6 +567,49 @@ test("what there is to draw is in lists of numbers", () => {
   world.free();
 });
 
+test("balls that were put in leave nothing behind", () => {
+  const balls = Array.from({ length: 150 }, (_, i) => ({
+    position: [(i % 5) * 0.19, 0.2 + 0.19 * Math.floor(i / 25), 0.19 * (Math.floor(i / 5) % 5)],
+    radius: 0.1,
+  }));
+  const world = new World({
+    run: { dt: 0.01, capacity: 200 },
+    contacts: { force: { stiffness: 1000, damping: 1 } },
+    forces: [{ gravity: { acceleration: [0, -9.8, 0] } }],
+    particles: balls,
+    scenery: [{ shape: { plane: { point: [0, 0, 0], normal: [0, 1, 0] } } }],
+  });
+  const end = () => {
+    for (let i = 0; i < 30; i++) world.advance(0.01);
+    return world.hash();
+  };
+  const begun = world.save();
+  const expected = end();
+  for (const radius of [0.1, 0.3, 5]) {
+    world.restore(begun);
+    world.spawn({ position: [50, 100, 0], radius });
+    const wide = world.save();
+    const beside = end();
+    world.restore(begun);
+    assert.equal(end(), expected, `restored, ${radius} m`);
+    world.restart();
+    assert.equal(end(), expected, `restarted, ${radius} m`);
+    world.restore(wide);
+    assert.equal(end(), beside, `with it again, ${radius} m`);
+  }
+  world.free();
+});
+
+test("names that stand alone are told of where they stand", () => {
+  for (const [scene, place] of [
+    [{ forces: [{ drag: {} }, "drag", { drag: {} }] }, "scene:forces[1]: a name alone"],
+    [{ forces: ["drag"] }, "scene:forces[0]: a name alone"],
+    [{ contacts: "impulse" }, "scene:contacts: a name alone"],
+  ]) {
+    refuses(() => new World(scene), new RegExp("^" + place.replaceAll("[", "\\[")));
+  }
+});
+
 test("a world goes back to what was saved", () => {
   for (const name of ["fountain", "fireworks", "dice", "flag"]) {
     const world = new World(load(name));

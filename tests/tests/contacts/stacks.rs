@@ -1,7 +1,7 @@
 //! Balls held by position on balls: a contact holds by all the weight above it, what can rest stands still, and no index
 //! makes a difference.
 
-use pointmass::force::Friction;
+use pointmass::force::{Friction, Spring};
 use pointmass::index::Structure;
 use pointmass::shape::{Affine, Collider, Cuboid, Placed, Plane};
 use pointmass::{ContactMaterial, Contacts, Gravity, Method, Particle, Scene, Vec3};
@@ -167,6 +167,52 @@ fn who_finds_no_room_is_the_same_whatever_the_index() {
         assert!(want.1 > 0, "{} balls find room", start.len());
         for structure in Structure::ALL {
             assert_eq!(run(*structure), want, "{structure}");
+        }
+    }
+}
+
+/// What lies on each other is borne by what lies below, whatever somebody does who touches nobody.
+#[test]
+fn a_stack_stands_whatever_goes_on_elsewhere() {
+    let mut round = 0;
+    for mass in [0.001f32, 4.0, 100.0] {
+        for (rate, substeps) in STEPS {
+            // Those that choose their steps do so by whoever is farthest off.
+            let steady = Method::ALL.iter().filter(|method| !method.chooses_steps());
+            let method = *steady.cycle().nth(round).expect("there is always a next one");
+            round += 1;
+            let run = |masses: &[f32]| {
+                let mut start: Vec<_> = (0..6).map(|i| ball(Vec3::Y * (0.1 + 0.2 * i as f32), 0.1)).collect();
+                // It hangs on a spring far away, wide or a point.
+                let others = masses.iter().map(|&mass| Particle {
+                    mass,
+                    radius: if round % 2 == 0 { 0.2 } else { 0.0 },
+                    ..ball(Vec3::new(50.0, 8.0, 0.0), 0.0)
+                });
+                start.extend(others);
+                let nail = start.len() as u32;
+                start.push(Particle { fixed: true, radius: 0.0, ..ball(Vec3::new(50.0, 10.0, 0.0), 0.0) });
+                let springs = [Spring::new([nail - 1, nail], 1.0, 50.0 * mass)];
+                let springs = if masses.is_empty() { &springs[..0] } else { &springs[..] };
+                let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+                let scene = Scene {
+                    start: &start,
+                    materials: &[rubbing(0.5)],
+                    forces: &Gravity { acceleration: Vec3::NEG_Y * G as f32 },
+                    springs: &springs,
+                    colliders: &floor,
+                    substeps,
+                    constraints: &Contacts::HARD,
+                    integrator: &method,
+                    ..Scene::EMPTY
+                };
+                let mut system = started(&scene, start.len(), 1);
+                pointmass_tests::run(&mut system, &scene, 1.0 / f64::from(rate), 2 * rate);
+                system.particles().position[..6].to_vec()
+            };
+            let (alone, beside) = (run(&[]), run(&[mass]));
+            let off = alone.iter().zip(&beside).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+            assert!(off < 1e-6, "{mass} kg, {rate}/s in {substeps}, {method}: {off} m");
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Sheets that touch themselves and each other: nothing passes, layers stay layers, friction holds by its angle, momenta are kept.
 
+mod apart;
 mod cloths;
 mod curved;
 mod draped;
