@@ -30,37 +30,23 @@ pub(super) fn add_up(
 }
 
 /// Pairs that are put in order at a time.
-const IN_ORDER: usize = if cfg!(target_os = "none") { 16 } else { 128 };
-/// Rows whose pairs are: about as many as have no more than those that begin to touch.
-const ROWS: usize = IN_ORDER / 4;
+const IN_ORDER: usize = if cfg!(target_os = "none") { 16 } else { 2048 };
 
-/// Visits those pairs of neighbours that are wanted, each once, in ascending order of their rows, whatever order the index has.
+/// Visits those pairs of neighbours that are wanted, each once, in ascending order of their rows, whatever order the index has: by going over all of them as
+/// often as there are more than can be put in order at a time.
 pub(super) fn in_order(
     state: &State<'_>,
     reach: f32,
     is_wanted: impl Fn([usize; 2]) -> bool,
     mut visit: impl FnMut([usize; 2]),
 ) {
-    let all = state.position.len();
-    for first in (0..all).step_by(ROWS) {
-        some_in_order(state, (first..all.min(first + ROWS), reach), &is_wanted, &mut visit);
-    }
-}
-
-/// Visits those of some rows: by going over all of them as often as there are more than can be put in order at a time.
-fn some_in_order(
-    state: &State<'_>,
-    (rows, reach): (Range<usize>, f32),
-    is_wanted: &impl Fn([usize; 2]) -> bool,
-    visit: &mut impl FnMut([usize; 2]),
-) {
     let mut done = None;
     loop {
         let (mut first, mut len) = ([[0; 2]; IN_ORDER], 0);
-        state.near.of(rows.clone(), reach, &mut |row, nearby| {
-            for other in nearby.rows().iter().map(|&other| other as usize) {
-                let pair = [row, other];
-                if row < other && Some(pair) > done && is_wanted(pair) {
+        state.near.of(0..state.position.len(), reach, &mut |row, nearby| {
+            for &other in nearby.rows() {
+                let pair = [row as u32, other];
+                if pair[0] < other && Some(pair) > done && is_wanted(pair.map(|row| row as usize)) {
                     let place = first[..len].partition_point(|before| *before < pair);
                     len = (len + 1).min(IN_ORDER);
                     // The last one makes room.
@@ -71,7 +57,7 @@ fn some_in_order(
                 }
             }
         });
-        first[..len].iter().for_each(|&pair| visit(pair));
+        first[..len].iter().for_each(|&pair| visit(pair.map(|row| row as usize)));
         if len < IN_ORDER {
             return;
         }

@@ -34,13 +34,7 @@ impl SceneFile {
         };
         add(format_args!("run.capacity"), self.odd_capacity());
         self.add_elasticities(&mut add);
-        for (i, spring) in self.springs.iter().enumerate() {
-            add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
-            let gains =
-                |number: f32| (number < 0.0).then(|| format!("{number} is below 0, so it gains energy without bound"));
-            add(format_args!("springs[{i}].ks"), gains(spring.ks));
-            add(format_args!("springs[{i}].kd"), gains(spring.kd));
-        }
+        self.add_springs(&mut add);
         for (i, body) in self.soft_bodies.iter().enumerate() {
             add(
                 format_args!("soft_bodies[{i}].radius"),
@@ -141,6 +135,17 @@ impl SceneFile {
             )
         };
         (depth > room && heaviest.mass > lightest.mass).then(sinks)
+    }
+
+    /// Remarks on springs.
+    fn add_springs(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        for (i, spring) in self.springs.iter().enumerate() {
+            add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
+            let gains =
+                |number: f32| (number < 0.0).then(|| format!("{number} is below 0, so it gains energy without bound"));
+            add(format_args!("springs[{i}].ks"), gains(spring.ks));
+            add(format_args!("springs[{i}].kd"), gains(spring.kd));
+        }
     }
 
     /// Remarks on bodies that begin in one place.

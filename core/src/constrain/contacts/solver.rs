@@ -4,7 +4,8 @@ mod bounces;
 mod report;
 
 use super::super::Bodies;
-use super::lists::{Face, Kept, Pair};
+use super::super::union::{root, unite};
+use super::lists::{Face, Kept, Listed, Pair};
 use super::touch::{hold_back, passed};
 use crate::index::{Room, between};
 use crate::math::{aside, largest, length, max, min, sqrt, unit};
@@ -21,6 +22,9 @@ const SUPPORT: f32 = 0.6;
 /// The number of roundings that each particle's velocity may have gone through. Gravity that adds less than that in a sub-step, in one of a hundredth of a
 /// frame where all fall at some 850 m/s, counts for none.
 const ROUNDINGS: f32 = 8.0;
+
+/// By how much the changes of velocities may differ that count as one, as a share.
+const EVEN: f32 = 0.01;
 
 /// Moves what overlaps apart, and lets velocities follow.
 pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: f32) {
@@ -44,26 +48,61 @@ pub(super) fn project(bodies: &mut Bodies<'_>, kept: &mut Kept<'_>, compliance: 
     }
 }
 
-/// By how much forces from outside have changed the velocity of all together that may touch something \[m/s\]: the mean by mass, in which what two do to each other is
-/// nothing, and so is what may be rounding. Else contacts would take that for weight, and share it out otherwise than momentum asks for. What others go
-/// through is nothing to those.
+/// By how much forces from outside have changed the velocity of all together that what stands still may bear \[m/s\]: the mean by mass, in which what two do to each
+/// other is nothing, and so is what may be rounding. Else contacts would take that for weight, and share it out otherwise than momentum asks for. What others
+/// go through is nothing to those, and nobody has weight whom nothing bears, unless all fall alike.
 fn driven(bodies: &Bodies<'_>, kept: &mut Kept<'_>) -> Vec3 {
+    let all = mean_change(bodies, |_| true);
+    let most = EVEN * EVEN * all.dot(all);
+    let mut changes = changes(bodies);
+    if changes.all(|(_, change)| (change - all).length_squared() <= most) {
+        return all;
+    }
+    let is_borne = find_borne(bodies, kept);
+    mean_change(bodies, |row| is_borne[row] != 0)
+}
+
+/// The rows of those that can be moved, and how their velocities have changed \[m/s\]. A particle that is no longer finite must not reach the others before it is
+/// taken out.
+fn changes<'b>(bodies: &'b Bodies<'_>) -> impl Iterator<Item = (usize, Vec3)> + 'b {
+    let changes = bodies.velocity.iter().zip(bodies.before[1]).map(|(&now, &before)| now - before).enumerate();
+    changes.filter(|&(row, change)| bodies.inverse_mass[row] > 0.0 && (change * bodies.mass[row]).is_finite())
+}
+
+/// The mean by mass of how the velocities of some have changed \[m/s\], but for what may be rounding.
+fn mean_change(bodies: &Bodies<'_>, counts: impl Fn(usize) -> bool) -> Vec3 {
     let (mut sum, mut whole, mut sizes) = (Vec3::ZERO, 0.0, 0.0);
-    let touches = &mut kept.round[..bodies.len()];
-    touches.fill(0);
-    kept.pairs[..kept.lists.pairs as usize].iter().flat_map(|pair| pair.rows).for_each(|row| touches[row as usize] = 1);
-    kept.faces[..kept.lists.faces as usize].iter().for_each(|face| touches[face.row as usize] = 1);
-    for (row, &mass) in bodies.mass.iter().enumerate().filter(|&(row, _)| touches[row] != 0) {
-        let [now, before] = [bodies.velocity[row], bodies.before[1][row]];
-        let change = (now - before) * mass;
-        // A particle that is no longer finite must not reach the others before it is taken out.
-        if bodies.inverse_mass[row] > 0.0 && change.is_finite() {
-            (sum, whole) = (sum + change, whole + mass);
-            sizes += (largest(now) + largest(before)) * mass;
-        }
+    for (row, change) in changes(bodies).filter(|&(row, _)| counts(row)) {
+        let mass = bodies.mass[row];
+        (sum, whole) = (sum + change * mass, whole + mass);
+        sizes += (largest(bodies.velocity[row]) + largest(bodies.before[1][row])) * mass;
     }
     let (mean, rounding) = (sum / whole, ROUNDINGS * f32::EPSILON * sizes);
     if mean.is_finite() && largest(sum) > rounding { mean } else { Vec3::ZERO }
+}
+
+/// 1 for all that may touch what stands still, or somebody who does, and so on; else 0.
+fn find_borne<'k>(bodies: &Bodies<'_>, kept: &'k mut Kept<'_>) -> &'k [u32] {
+    let (len, Listed { pairs, faces, .. }) = (bodies.len(), *kept.lists);
+    let pairs = &kept.pairs[..pairs as usize];
+    let moves = |row: &u32| bodies.inverse_mass[*row as usize] > 0.0;
+    let bound = &mut kept.round[..len];
+    bound.iter_mut().enumerate().for_each(|(row, to)| *to = row as u32);
+    // What stands still is no part of what it bears.
+    for &[a, b] in pairs.iter().map(|pair| &pair.rows).filter(|rows| rows.iter().all(moves)) {
+        unite(bound, a, b);
+    }
+    let bears = &mut kept.owed[..len];
+    bears.fill(Vec3::ZERO);
+    let on_still = pairs.iter().filter(|pair| !pair.rows.iter().all(moves)).flat_map(|pair| pair.rows);
+    for row in on_still.chain(kept.faces[..faces as usize].iter().map(|face| face.row)) {
+        bears[root(bound, row) as usize] = Vec3::ONE;
+    }
+    for row in 0..len as u32 {
+        bears[row as usize] = bears[root(bound, row) as usize];
+    }
+    bound.iter_mut().zip(&*bears).for_each(|(is_borne, bears)| *is_borne = u32::from(*bears != Vec3::ZERO));
+    bound
 }
 
 /// Answers the approach of what touches by the elasticity and the slip by friction.
