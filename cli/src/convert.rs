@@ -4,7 +4,6 @@ use crate::formats::{SceneFormat, named};
 use crate::load::{self, Reading};
 use crate::outcome::{Failure, Outcome, warn};
 use pointmass::scene::{SceneFile, write_scn};
-use pointmass::shape::Shape;
 use pointmass_files::whole::{Outs, existing_folder_of};
 use std::path::{Path, PathBuf};
 
@@ -25,7 +24,7 @@ pub(crate) struct Convert {
 pub(crate) fn convert(args: &Convert) -> Outcome {
     let (mut scene, source) = load::declared(&args.from, args.reading.unknown())?;
     scene.check().map_err(|error| source.told(error))?;
-    rebase(&mut scene, folder(&args.from)?, folder(&args.to.0)?);
+    rebase(&mut scene, &folder(&args.from)?, &folder(&args.to.0)?);
     let outs = Outs::create(std::slice::from_ref(&args.to), None)?;
     outs.write(|format| match format {
         SceneFormat::Json => Ok(scene.to_json()),
@@ -44,23 +43,12 @@ fn folder(path: &Path) -> Outcome<PathBuf> {
 }
 
 /// Names every file relative to the folder `to` that was named relative to the folder `from`.
-fn rebase(scene: &mut SceneFile, from: PathBuf, to: PathBuf) {
-    let moved = |name: &mut String| {
-        if Path::new(name).is_relative() {
-            // What is there goes by its real name, without detours.
-            let file = from.join(&*name);
-            let file = file.canonicalize().unwrap_or(file);
-            let path = pathdiff::diff_paths(&file, &to).unwrap_or(file);
-            *name = path.to_string_lossy().into_owned();
-        }
-    };
-    let shapes = (scene.emitters.iter_mut().map(|e| &mut e.shape))
-        .chain(scene.sinks.iter_mut().map(|s| &mut s.shape))
-        .chain(scene.scenery.iter_mut().map(|s| &mut s.shape));
-    for shape in shapes {
-        if let Shape::Mesh(name) = shape {
-            moved(name);
-        }
+fn rebase(scene: &mut SceneFile, from: &Path, to: &Path) {
+    for name in scene.file_names_mut().filter(|name| Path::new(name).is_relative()) {
+        // What is there goes by its real name, without detours.
+        let file = from.join(&*name);
+        let file = file.canonicalize().unwrap_or(file);
+        let path = pathdiff::diff_paths(&file, to).unwrap_or(file);
+        *name = path.to_string_lossy().into_owned();
     }
-    scene.materials.iter_mut().filter_map(|m| m.texture.as_mut()).for_each(moved);
 }

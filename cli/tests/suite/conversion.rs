@@ -4,7 +4,9 @@ use crate::course;
 use crate::scenes::{BUSY, TRIANGLE};
 use crate::scn::EVERYTHING;
 use crate::tool::Folder;
-use pointmass::scene::SceneFile;
+use pointmass::scene::{SceneFile, schema};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
 /// A scene of several files and folders.
 fn spread() -> Folder {
@@ -60,6 +62,90 @@ fn names_are_relative_to_the_output_and_no_longer_than_they_have_to_be() {
     assert_eq!(found, expected);
     let found: Vec<String> = names("in/sub/a.json");
     assert_eq!(found, ["own.off", "../../far.off", "../meshes/a.off"]);
+}
+
+#[test]
+fn every_name_of_a_file_leads_there_from_the_new_folder() {
+    let mesh = r#"{"mesh": "m.off"}"#;
+    let strand = r#""segments": 2, "radius": 1e-4, "young": 1e9, "density": 1000"#;
+    let body = r#""sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0]"#;
+    let soft = r#""spacing": 0.5, "density": 1000, "frequency": 5, "position": [0, 0, 0]"#;
+    let scene = format!(
+        r#"{{"$schema": "m.json", "emitters": [{{"shape": {mesh}}}], "scenery": [{{"shape": {mesh}}}],
+        "sinks": [{{"shape": {mesh}, "intensity": 1, "ca": 1, "la": 0, "qa": 0}}], "goals": [{{"shape": {mesh}, "arrive": 1}}],
+        "cloths": [{{"form": {mesh}, "mass": 1, "springs": {{"bend": {{"ks": 1}}}}}}], "soft_bodies": [{{"form": {mesh}, {soft}}}],
+        "boxes": [{{"form": {mesh}, {body}}}, {{"form": {{"solid": {{"mesh": "m.off", "within": 0.1}}}}, {body}}}],
+        "strands": [{{"form": {{"on": {{"shape": {mesh}, "count": 1, "length": 1}}}}, {strand}}}],
+        "materials": [{{"texture": "m.png", "sprite": {{"picture": "m.png"}}}}, {{"shape": {{"form": {mesh}}}}},
+            {{"sprite": {{"picture": "leaf"}}}}]}}"#
+    );
+    let folder = Folder::with("in/a.json", &scene);
+    for name in ["in/m.off", "in/m.png", "in/m.json", "o/keep"] {
+        folder.write(name, "");
+    }
+    folder.run("convert in/a.json o/b.json").fine();
+    let moved = scene.replace("\"m.", "\"../in/m.");
+    assert_eq!(folder.read("o/b.json"), SceneFile::from_json("", &moved).expect("a scene").to_json());
+    folder.run("convert o/b.json in/c.json").fine();
+    assert_eq!(folder.read("in/c.json"), SceneFile::from_json("", &scene).expect("a scene").to_json());
+}
+
+/// The least values of a schema of which each says one of its texts, with the name of that; and one that says none.
+fn telling(root: &Value, schema: &Value) -> (Vec<(String, Value)>, Value) {
+    if let Some(name) = schema["$ref"].as_str() {
+        return telling(root, root.pointer(&name[1..]).expect("it is there"));
+    }
+    if let Some(forms) = schema["oneOf"].as_array().or(schema["anyOf"].as_array()) {
+        let (texts, mut plain): (Vec<_>, Vec<_>) = forms.iter().map(|form| telling(root, form)).unzip();
+        return (texts.concat(), plain.swap_remove(0));
+    }
+    if let Some(properties) = schema["properties"].as_object() {
+        let needed = schema["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
+        let plain = needed.map(|name| (name.to_string(), telling(root, &properties[name]).1)).collect();
+        let mut texts = Vec::new();
+        for (name, property) in properties {
+            for (mut what, value) in telling(root, property).0 {
+                let mut object = Value::clone(&plain);
+                object[name] = value;
+                what = if what.is_empty() { name.clone() } else { format!("{name}.{what}") };
+                texts.push((what, object));
+            }
+        }
+        return (texts, plain);
+    }
+    let is =
+        |kind: &str| schema["type"] == kind || schema["type"].as_array().is_some_and(|of| of.contains(&kind.into()));
+    if is("array") {
+        let (texts, plain) = telling(root, &schema["items"]);
+        let least = schema["minItems"].as_u64().unwrap_or(0) as usize;
+        return (texts.into_iter().map(|(what, one)| (what, json!([one]))).collect(), json!(vec![plain; least]));
+    }
+    let one_of = [&schema["const"], &schema["enum"][0]].into_iter().find(|value| !value.is_null());
+    match one_of {
+        Some(value) => (Vec::new(), value.clone()),
+        None if is("string") => (vec![(String::new(), json!("mark.png"))], json!("")),
+        None if is("boolean") => (Vec::new(), json!(false)),
+        None if is("object") => (Vec::new(), json!({})),
+        None => (Vec::new(), json!(1)),
+    }
+}
+
+#[test]
+fn every_text_of_a_scene_is_known_to_be_a_file_or_not() {
+    let root: Value = serde_json::from_str(&schema()).expect("JSON");
+    let mut others = BTreeSet::new();
+    let (texts, _) = telling(&root, &root);
+    assert!(texts.len() > 15, "{texts:?}");
+    for (what, scene) in texts {
+        let mut scene = SceneFile::from_json(&what, &scene.to_string()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.to_json().matches("mark").count(), 1, "{what}");
+        scene.file_names_mut().for_each(|name| *name = name.replace("mark", "moved"));
+        if scene.to_json().contains("mark") {
+            others.insert(what);
+        }
+    }
+    // Whoever adds another has to say what it is: a name of a file belongs to `SceneFile::file_names_mut`.
+    assert_eq!(others, ["about", "custom.name", "forces.relaxation.column"].map(String::from).into());
 }
 
 #[test]

@@ -41,6 +41,8 @@ mod material;
 #[cfg(feature = "alloc")]
 mod model;
 #[cfg(feature = "alloc")]
+mod names;
+#[cfg(feature = "alloc")]
 mod numbers;
 #[cfg(feature = "alloc")]
 mod placing;
