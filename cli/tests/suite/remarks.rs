@@ -164,6 +164,10 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             "a.json:sinks[0].intensity: it divides by ca, la and qa",
         ),
         (
+            format!(r#"{{"particles": [{{}}], "sinks": [{{{shape}, "intensity": 1, "ca": 0, "la": 0, "qa": 1}}]}}"#),
+            "a.json:sinks[0].ca: 0 leaves its pull without bound",
+        ),
+        (
             r#"{"particles": [{}], "reapers": [{"dense": {"radius": 0, "most": 1}}]}"#.into(),
             "a.json:reapers[0].dense.radius: nobody is within 0 m",
         ),

@@ -94,13 +94,19 @@ impl<M> Sink<M> {
     }
 
     /// ∫ intensity / (ca + la s + qa s²) ds \[J\] from one distance to another, in closed form. Each part is a difference that
-    /// is finite wherever the integral is, also where there is no constant term.
+    /// is finite wherever the integral is, also where there is no constant term. Across a distance at which the denominator is zero it
+    /// is the principal value, and there it is zero, as the pull is.
     fn work(&self, from: f64, to: f64) -> f64 {
         let [c, b, a] = [self.ca, self.la, self.qa].map(f64::from);
+        if self.intensity == 0.0 || c + to * (b + to * a) == 0.0 {
+            return 0.0;
+        }
         let integral = if a == 0.0 && b == 0.0 {
             (to - from) / c
         } else if a == 0.0 {
-            libm::log1p(b * (to - from) / (c + b * from)) / b
+            let growth = b * (to - from) / (c + b * from);
+            let part = if growth > -1.0 { libm::log1p(growth) } else { libm::log(-1.0 - growth) };
+            part / b
         } else {
             let discriminant = 4.0 * a * c - b * b;
             let slope = |s: f64| 2.0 * a * s + b;
@@ -143,5 +149,29 @@ mod tests {
                 assert!((sink.potential(9.0) - sum).abs() < 1e-8 * (1.0 + sum), "{ca} {la} {qa}, {softening}");
             }
         }
+    }
+
+    #[test]
+    fn the_potential_is_a_number_where_the_pull_is_none() {
+        let sink = |intensity, ca, la, qa| {
+            let shape = Shape::<Mesh<'_>>::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
+            Sink { shape, group: None, intensity, ca, la, qa, softening: 0.0 }
+        };
+        for (intensity, ca, la, qa, square) in [
+            (10.0, 0.0, 0.0, 0.0, 9.0),
+            (0.0, 0.0, 0.0, 1.0, 9.0),
+            (10.0, 0.0, 1.0, 0.0, 0.0),
+            (10.0, 0.0, 0.0, 1.0, 0.0),
+            // Where the denominator changes its sign.
+            (10.0, 1.0, -1.0, 0.0, 1.0),
+            (10.0, 1.0, 0.0, -1.0, 1.0),
+        ] {
+            assert_eq!(sink(intensity, ca, la, qa).potential(square), 0.0, "{intensity} {ca} {la} {qa}");
+        }
+        // On the far side of a pole differences are the integrals of the pull there, and both forms of them agree.
+        let (linear, quadratic) = (sink(10.0, 1.0, -1.0, 0.0), sink(10.0, 1.0, -1.0, -1e-6));
+        let far = |sink: &Sink<_>| sink.potential(9.0) - sink.potential(4.0);
+        assert!((far(&linear) + 10.0 * libm::log(2.0)).abs() < 1e-12, "{}", far(&linear));
+        assert!((linear.potential(9.0) - quadratic.potential(9.0)).abs() < 1e-3, "{}", quadratic.potential(9.0));
     }
 }

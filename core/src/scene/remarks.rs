@@ -331,6 +331,11 @@ impl SceneFile {
             let idle = sink.intensity != 0.0 && [sink.ca, sink.la, sink.qa] == [0.0; 3];
             let nothing = || "it divides by ca, la and qa, which are all zero, so it pulls nobody".into();
             add(format_args!("sinks[{i}].intensity"), idle.then(nothing));
+            let endless = sink.intensity != 0.0 && !idle && [sink.ca, sink.softening] == [0.0; 2];
+            let bounded = || {
+                "0 leaves its pull without bound at its surface, from which energies count, so these are infinite; say softening, or another ca".into()
+            };
+            add(format_args!("sinks[{i}].ca"), endless.then(bounded));
         }
         for (i, reaper) in self.reapers.iter().enumerate() {
             let narrow = matches!(reaper, ReaperKind::Dense(dense) if dense.radius == 0.0);
