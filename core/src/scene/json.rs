@@ -4,6 +4,7 @@ use super::{SceneError, SceneFile};
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
+use serde_json::{Error, Value};
 
 impl SceneFile {
     /// Reads JSON; `name` is the file's name for messages.
@@ -17,9 +18,16 @@ impl SceneFile {
             return Err(SceneError::at(name, 1, 1, "a scene is an object, not a list"));
         }
         serde_json::from_str(text).map_err(|error| {
-            let message = error.to_string();
-            let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what);
-            SceneError::at(name, error.line(), error.column(), plain(message))
+            let at = |error: &Error, message: &str| SceneError::at(name, error.line(), error.column(), message);
+            let message = bare(&error);
+            if message != NO_VALUE {
+                return at(&error, &plain(&message));
+            }
+            // The parser says so too where an object has to have one name, and has another number of them, though that is JSON.
+            match serde_json::from_str::<Value>(text) {
+                Ok(_) => at(&error, ONE_NAME),
+                Err(syntax) => at(&syntax, &plain(&bare(&syntax))),
+            }
         })
     }
 
@@ -64,10 +72,24 @@ const FORMER: [(&str, &str); 7] = [
     ("sliding", "kinetic"),
 ];
 
+/// The parser's message where it expects a value.
+const NO_VALUE: &str = "expected value";
+/// The message where an object has no name, or two, that say what it is.
+const ONE_NAME: &str = r#"expected one name with its settings, {"name": {...}}: in a list each has braces of its own, elsewhere there is one"#;
+
+/// The parser's message without the place.
+fn bare(error: &Error) -> String {
+    let message = error.to_string();
+    message.rsplit_once(" at line ").map_or(message.as_str(), |(what, _)| what).to_string()
+}
+
 /// The parser's message without the names of Rust's types.
 fn plain(message: &str) -> String {
     if message == "trailing characters" {
         return "this goes on where it has to end: the list before has all the entries that its field takes, or the scene is over".to_string();
+    }
+    if message == NO_VALUE {
+        return "expected a value: a number (JSON has no NaN and no infinity), a text in \"\", a list, an object, true, false or null".to_string();
     }
     if message == "number out of range" {
         return "number out of range: the largest is 3.4e38".to_string();
@@ -136,6 +158,24 @@ mod tests {
         assert!(error.to_string().starts_with("a.json:1:14: "), "{error}");
         let error = SceneFile::from_json("a.json", "{\"ambient\": [0, 0").expect_err("cut off");
         assert!(error.to_string().contains("EOF"), "{error}");
+    }
+
+    #[test]
+    fn no_value_and_a_name_too_many_are_told_apart() {
+        for (text, at, message) in [
+            (r#"{"forces": [{"drag": {}, "gravity": {"acceleration": [0, 1, 0]}}]}"#, "1:23", "expected one name"),
+            (r#"{"forces": [{}, {"drag": {}}]}"#, "1:14", "expected one name"),
+            (r#"{"scenery": [{"shape": {}}]}"#, "1:25", "expected one name"),
+            (r#"{"scenery": [{"shape": {"mesh": "a", "box": 1}}]}"#, "1:35", "expected one name"),
+            (r#"{"forces": [{"drag": {},}]}"#, "1:25", "trailing comma"),
+            (r#"{"forces": [{"drag": {} "gravity": 1}]}"#, "1:25", "expected `,` or `}`"),
+            (r#"{"ambient": [0, NaN, 0]}"#, "1:17", "expected a value: a number (JSON has no NaN"),
+            (r#"{"about": }"#, "1:11", "expected a value"),
+            (r#"{"forces": [{"drag": }]}"#, "1:22", "expected a value"),
+        ] {
+            let error = SceneFile::from_json("a.json", text).expect_err(text).to_string();
+            assert!(error.starts_with(&format!("a.json:{at}: {message}")), "{text}: {error}");
+        }
     }
 
     #[test]
