@@ -14,20 +14,20 @@ pub(crate) struct Run {
     /// How many steps, instead of a duration
     #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "duration", value_parser = natural)]
     pub(crate) steps: Option<u64>,
-    /// Record every K-th step (step 0 and the last always)
-    #[arg(long, value_name = "K", allow_negative_numbers = true, default_value_t = 1, value_parser = positive)]
-    pub(crate) every: u64,
+    /// Record every K-th step (step 0 and the last always); by default every one
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = positive)]
+    pub(crate) every: Option<u64>,
     /// Record into FILE: .csv, .jsonl, .xyz, .npz, .glb or .gltf; or .npy, .ply, .obj or .vtp for one file a record, as
     /// every name with a place for a number has it, such as DIR/%04d.csv. Or into -, standard output, at the end; what
     /// happened is told on standard error then. May be given several times
     #[arg(long, value_name = "FILE", value_parser = recording)]
     pub(crate) out: Vec<(PathBuf, Option<RecordFormat>)>,
-    /// The format of --out -
-    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = RecordFormat::Csv)]
-    pub(crate) format: RecordFormat,
-    /// What a line of .jsonl holds
-    #[arg(long, value_enum, value_name = "WHAT", default_value_t = Line::Particle)]
-    pub(crate) line: Line,
+    /// The format of --out -; by default csv
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<RecordFormat>,
+    /// What a line of .jsonl holds; by default a particle
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub(crate) line: Option<Line>,
     /// Record births, hits, touches and deaths, one a line, into FILE: .csv or .jsonl
     #[arg(long, value_name = "FILE", value_parser = events)]
     pub(crate) events: Option<(PathBuf, EventsFormat)>,
@@ -41,4 +41,24 @@ pub(crate) struct Run {
     /// How to say on standard output what happened
     #[arg(long, value_enum, default_value_t = Said::Text)]
     pub(crate) report: Said,
+}
+
+impl Run {
+    /// The format of a recording; standard output has one of its own.
+    pub(super) fn format(&self, out: &(PathBuf, Option<RecordFormat>)) -> RecordFormat {
+        out.1.or(self.format).unwrap_or(RecordFormat::Csv)
+    }
+
+    /// What it was given to record by, and has no use for.
+    pub(super) fn idle(&self) -> Vec<String> {
+        let is_standard = |(_, format): &(PathBuf, Option<RecordFormat>)| format.is_none();
+        let has_lines = |out: &(PathBuf, Option<RecordFormat>)| matches!(self.format(out), RecordFormat::Jsonl);
+        let options = [
+            ("--every", self.every.is_none() || !self.out.is_empty(), "add --out FILE"),
+            ("--format", self.format.is_none() || self.out.iter().any(is_standard), "it is that of --out -"),
+            ("--line", self.line.is_none() || self.out.iter().any(has_lines), "it is for an --out of .jsonl"),
+        ];
+        let idle = options.into_iter().filter(|(_, is_used, _)| !is_used);
+        idle.map(|(option, _, why)| format!("{option} does nothing: {why}")).collect()
+    }
 }

@@ -23,26 +23,37 @@ pub(crate) struct GroupError {
     pub(crate) particles: usize,
 }
 
+/// The name of a force and how it takes far groups as one, if it does.
+fn opening(force: &ForceKind) -> Option<(&'static str, Opening)> {
+    let (name, law) = match *force {
+        ForceKind::MutualGravity(MutualGravity { theta, softening, quadrupole, .. }) => {
+            ("mutual_gravity", Opening { theta, softening, quadrupole })
+        }
+        ForceKind::Coulomb(Coulomb { theta, softening, quadrupole, .. }) => {
+            ("coulomb", Opening { theta, softening, quadrupole })
+        }
+        _ => return None,
+    };
+    (law.theta > 0.0).then_some((name, law))
+}
+
+/// Tells whether a force of the scene takes far groups as one.
+pub(super) fn are_taken(world: &World) -> bool {
+    world.model.forces.0.iter().any(|force| opening(force).is_some())
+}
+
 /// The errors of all forces of the scene that have an opening angle, over the particles as they are.
 pub(crate) fn errors(world: &World) -> Vec<GroupError> {
     let particles = world.system.particles();
     let mut memory = vec![0; BarnesHut::words(particles.position.len())];
-    let mut measured = |force: &'static str, law: Opening, weights: &[f32]| {
-        let tree = BarnesHut::over(&mut memory, particles.position, weights).filter(|_| law.theta > 0.0)?;
+    let error = |force: &ForceKind| {
+        let (name, law) = opening(force)?;
+        let weights = if let ForceKind::Coulomb(_) = force { particles.charge } else { particles.mass };
+        let tree = BarnesHut::over(&mut memory, particles.position, weights)?;
         let stride = (particles.position.len() / SAMPLED).max(1);
         let error = tree.error(law, stride);
         let particles = particles.position.len().div_ceil(stride);
-        Some(GroupError { force, theta: law.theta, rms: error.rms, largest: error.largest, particles })
+        Some(GroupError { force: name, theta: law.theta, rms: error.rms, largest: error.largest, particles })
     };
-    let forces = world.model.forces.0.iter();
-    let error = |force: &ForceKind| match *force {
-        ForceKind::MutualGravity(MutualGravity { theta, softening, quadrupole, .. }) => {
-            measured("mutual_gravity", Opening { theta, softening, quadrupole }, particles.mass)
-        }
-        ForceKind::Coulomb(Coulomb { theta, softening, quadrupole, .. }) => {
-            measured("coulomb", Opening { theta, softening, quadrupole }, particles.charge)
-        }
-        _ => None,
-    };
-    forces.filter_map(error).collect()
+    world.model.forces.0.iter().filter_map(error).collect()
 }

@@ -27,13 +27,18 @@ pub(crate) fn run(args: &Run) -> Outcome {
         None => Schedule::new(world.duration, world.dt),
     };
     world.warn_of_steps(world.dt, schedule.end(schedule.steps()).seconds_f64());
+    warn(&args.idle());
+    if args.group_error && !groups::are_taken(&world) {
+        warn(&["--group-error does nothing: no force takes far groups as one, by a theta above 0".into()]);
+    }
     let mut recordings = Recordings::create(args, &world)?;
     // Of its own, since stepping borrows the world.
     let model = world.model.clone();
     let mut ledger = args.ledger.then(|| Ledger::new(&world.system, &model.scene()));
     let mut effort = Effort::default();
     recordings.record(0, &world)?;
-    world.on_threads(|world| go(world, &schedule, args.every, &mut recordings, ledger.as_mut(), &mut effort))?;
+    let every = args.every.unwrap_or(1);
+    world.on_threads(|world| go(world, &schedule, every, &mut recordings, ledger.as_mut(), &mut effort))?;
     // How many sub-steps particles have made, those of each step being as many on average.
     let substeps = effort.particle_steps as f64 * world.pace.told().total as f64 / (effort.steps as f64).max(1.0);
     warn(stall::told(world.system.totals(), substeps).as_slice());

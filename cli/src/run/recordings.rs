@@ -19,17 +19,16 @@ pub(super) struct Recordings {
 
 /// Refuses recordings that would take each other's place.
 pub(super) fn keep_apart(args: &Run) -> Outcome {
-    let first = |(path, format): &(PathBuf, Option<RecordFormat>)| Recorder::first(path, format.unwrap_or(args.format));
-    let outs = args.out.iter().map(|out| ("--out", first(out)));
+    let outs = args.out.iter().map(|out| ("--out", Recorder::first(&out.0, args.format(out))));
     whole::keep_apart(outs.chain(args.events.iter().map(|(path, _)| ("--events", path.clone()))))
 }
 
 impl Recordings {
     /// Begins all of them.
     pub(super) fn create(args: &Run, world: &World) -> Outcome<Self> {
-        let recorder = |(path, format): &(PathBuf, Option<RecordFormat>)| match format.unwrap_or(args.format) {
-            RecordFormat::Jsonl if args.line == Line::Record => Recorder::create(path, RecordFormat::Frames),
-            format => Recorder::create(path, format),
+        let recorder = |out: &(PathBuf, Option<RecordFormat>)| match args.format(out) {
+            RecordFormat::Jsonl if args.line == Some(Line::Record) => Recorder::create(&out.0, RecordFormat::Frames),
+            format => Recorder::create(&out.0, format),
         };
         let plan = || Plan::of(&world.file, &world.model, &name(&args.world.scene), &mut Disk);
         let plan = (!args.out.is_empty()).then(plan).transpose()?;

@@ -253,7 +253,28 @@ fn the_error_of_far_groups_is_told_on_request() {
     let [rms, largest] = ["rms", "largest"].map(|field| error[field].as_f64().expect("a number"));
     assert!(rms > 1e-6 && rms < 0.05 && largest > rms, "{report}");
     assert!(folder.report("far.json --steps 2").get("group_errors").is_none());
-    assert_eq!(folder.report("all.json --steps 2 --group-error")["group_errors"], serde_json::json!([]));
+    let answer = folder.run("run all.json --steps 2 --group-error --report json");
+    assert_eq!(answer.warnings(), ["--group-error does nothing: no force takes far groups as one, by a theta above 0"]);
+    assert_eq!(answer.report()["group_errors"], serde_json::json!([]));
+}
+
+#[test]
+fn options_for_recordings_that_nobody_makes_are_warned_of() {
+    let folder = Folder::with("a.scn", ONE);
+    for (options, idle) in [
+        ("--every 2", "--every does nothing: add --out FILE"),
+        ("--every 1 --events e.csv", "--every does nothing: add --out FILE"),
+        ("--format csv", "--format does nothing: it is that of --out -"),
+        ("--format csv --out o.csv", "--format does nothing: it is that of --out -"),
+        ("--line particle", "--line does nothing: it is for an --out of .jsonl"),
+        ("--line record --out o.csv", "--line does nothing: it is for an --out of .jsonl"),
+    ] {
+        assert_eq!(folder.run(&format!("run a.scn --steps 2 {options}")).warnings(), [idle], "{options}");
+    }
+    folder.run("run a.scn --steps 2 --every 2 --line record --out o.jsonl").fine();
+    // What happened is told on standard error, beside the recording.
+    let answer = folder.run("run a.scn --steps 2 --out - --format jsonl --line record");
+    assert!(answer.code == 0 && !answer.stderr.contains("warning"), "{answer:?}");
 }
 
 #[test]
@@ -311,7 +332,7 @@ fn the_hash_depends_on_the_run_alone() {
     let run = "busy.scn --steps 90 --seed 5";
     let hash = folder.hash(run);
     let outs = ["o.csv", "o.jsonl", "o.ply", "o.xyz"].map(|out| format!("--out {out}")).join(" ");
-    for more in ["", "--every 7", "--every 1000", &outs, &format!("{outs} --every 4"), "--capacity 5000"] {
+    for more in ["", &outs, &format!("{outs} --every 4"), &format!("{outs} --every 1000"), "--capacity 5000"] {
         assert_eq!(folder.hash(&format!("{run} {more}")), hash, "{more}");
     }
     assert_eq!(folder.hash("busy.scn --duration 1.5 --seed 5"), hash);
