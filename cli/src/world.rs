@@ -84,6 +84,8 @@ fn tolerance(text: &str) -> Result<f64, String> {
 /// A scene made ready and the system it is done to.
 #[derive(Debug)]
 pub(crate) struct World {
+    /// The name of the scene's file.
+    name: String,
     /// The scene as the file says it.
     pub(crate) file: SceneFile,
     /// The scene.
@@ -147,7 +149,8 @@ impl World {
         let tolerance = args.tolerance.unwrap_or_else(|| TOLERANCE * size(&file, &model));
         let pace = Pace::new(args.substeps, limit, tolerance);
         let threads = threads(args.threads, capacity)?;
-        Ok(Self { file, model, system, duration, dt, pace, threads })
+        let name = load::name(&args.scene).into_owned();
+        Ok(Self { name, file, model, system, duration, dt, pace, threads })
     }
 
     /// The method of the run.
@@ -159,7 +162,7 @@ impl World {
     pub(crate) fn warn_of_steps(&self, step: f64, duration: f64) {
         if let Substeps::Fixed(n) = self.pace.substeps() {
             let step = step / f64::from(n);
-            warn(&Bounds::of(&self.model).warnings(self.integrator(), step, duration));
+            warn(&Bounds::of(&self.model).warnings(&self.name, self.integrator(), step, duration));
             warn(stall::foreseen(&self.model, step, duration).as_slice());
         }
     }

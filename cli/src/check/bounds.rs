@@ -116,13 +116,15 @@ impl Bounds {
         ))
     }
 
-    /// Warnings of a run with this step \[s\], which the scene may cut into parts, that takes this long \[s\].
-    pub(crate) fn warnings(&self, method: Method, step: f64, duration: f64) -> Vec<String> {
+    /// Warnings of a run of the scene of a name with this step \[s\], which the scene may cut into parts, that takes this long \[s\].
+    pub(crate) fn warnings(&self, scene: &str, method: Method, step: f64, duration: f64) -> Vec<String> {
         let step = step / self.substeps;
-        let held = self.pushed.clone().into_iter().chain(self.holds.iter().filter_map(|hold| hold.warning(step)));
+        let placed = |warning: String| format!("{scene}:{warning}");
+        let held = self.pushed.clone().map(placed).into_iter();
+        let held = held.chain(self.holds.iter().filter_map(|hold| hold.warning(step)));
         let held = held.chain(self.holds.iter().filter_map(|hold| Some(hold.tumbling(step)?.0)));
         let is_alone = method.chooses_steps() || self.drag_step(method).admits(step);
-        let held = held.chain(self.birth_warning(step).filter(|_| is_alone));
+        let held = held.chain(self.birth_warning(step).filter(|_| is_alone).map(placed));
         if method.chooses_steps() {
             return held.collect();
         }

@@ -68,7 +68,7 @@ fn steps_are_not_called_stable_for_forces_that_nobody_looks_at() {
 fn drag_below_zero_is_warned_of() {
     let folder = Folder::with("a.json", r#"{"particles": [{}, {"drag": -0.5}], "forces": [{"drag": {}}]}"#);
     let warnings = folder.run("run a.json --steps 1").warnings().join(" ");
-    assert!(warnings.contains("particles[1] has a drag of -0.5 kg/s: below zero it adds energy"), "{warnings}");
+    assert!(warnings.contains("a.json:particles[1] has a drag of -0.5 kg/s: below zero it adds energy"), "{warnings}");
     // Without the force it does nothing.
     folder.write("b.json", r#"{"particles": [{"drag": -0.5}]}"#);
     folder.run("run b.json --steps 1").fine();
@@ -107,7 +107,11 @@ fn newborn_that_drag_throws_back_are_warned_of_whatever_the_method() {
             speeds.fold(f64::INFINITY, f64::min)
         };
         let told = |args: &str| folder.run(&format!("run a.json --integrator {method} {args}")).warnings().join(" ");
-        assert!(told("").contains("emitters[0] of drag 900 kg/s and mass 1 kg: the newborn fly"), "{}", told(""));
+        assert!(
+            told("").contains("a.json:emitters[0] of drag 900 kg/s and mass 1 kg: the newborn fly"),
+            "{}",
+            told("")
+        );
         assert!(told("").contains("take --substeps 9,"), "{}", told(""));
         assert!(told("--substeps 5").is_empty() && lowest("--substeps 5") > -1e-3, "{method}");
         assert!(lowest("") < -1.0, "{method}");
