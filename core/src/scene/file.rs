@@ -98,7 +98,7 @@ pub struct SceneFile {
     pub camera: Option<Camera>,
     /// Light from everywhere: red, green, blue.
     pub ambient: [f32; 3],
-    /// The colour behind everything.
+    /// The colour behind everything; a dark one is drawn somewhat lighter toward the bottom of the picture. A `sky` of three like colours is even.
     pub background: [f32; 3],
     /// A background by elevation, in place of that colour.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
