@@ -9,9 +9,12 @@ use super::MeshData;
 use super::text;
 use crate::fault::Fault;
 use crate::outcome::excerpt;
+use std::borrow::Cow;
+use std::iter::repeat_n;
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
     let text = text::decode(bytes);
+    let text = joined(&text);
     let mut mesh = MeshData::default();
     // A face may name vertices further down, so the highest index is looked at when all are known.
     let mut highest = None;
@@ -40,6 +43,26 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshData, Fault> {
         }
         _ => Ok(mesh),
     }
+}
+
+/// The text with every line as one that goes on in the next, as a backslash at its end says. Empty ones follow it, so that all others keep
+/// their numbers.
+fn joined(text: &str) -> Cow<'_, str> {
+    if !text.contains('\\') {
+        return text.into();
+    }
+    let (mut joined, mut open) = (String::with_capacity(text.len()), 0);
+    for line in text::lines(text) {
+        if let Some(part) = line.content.strip_suffix('\\') {
+            joined.extend([part, " "]);
+            open += 1;
+        } else {
+            joined.push_str(line.content);
+            joined.extend(repeat_n('\n', 1 + open));
+            open = 0;
+        }
+    }
+    joined.into()
 }
 
 /// The vertex that a corner names: `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1, or back from the latest with -1.
@@ -80,6 +103,8 @@ mod tests {
             format!("{POINTS}f 1/1 2/1 3/1\nl 1 2 3\np 1\n"),
             format!("{POINTS}f 1 2 3\n").replacen("0\n", "0 1 0 0\n", 1),
             format!("{POINTS}f 1 2 3\n").replace("0\n", "0 1.0\n"),
+            format!("{POINTS}f 1 \\\n2\\\r\n 3\n"),
+            format!("# c:\\made\\\n{POINTS}f 1 2 3 \\").replace("v 1 ", "v \\\n1 "),
         ];
         for variant in variants {
             let mesh = read(variant.as_bytes()).unwrap();
@@ -106,6 +131,8 @@ mod tests {
             ("v 0 nan 0", "x.obj:4: `nan`: expected a finite coordinate within ±3.4e38"),
             ("v 0 1e39 0", "x.obj:4: `1e39`: expected a finite coordinate within ±3.4e38"),
             ("v 0 1", "x.obj:4: `v 0 1`: expected three coordinates"),
+            ("f 1 \\\n 2 \\\n 3\nf 1 2 4", "x.obj:7: names vertex 4, but the file has 3 vertices"),
+            ("f 1 \\\n 2", "x.obj:4: `f 1 2`: expected a face of three or more corners"),
             ("", "x.obj: has no triangles: a mesh needs at least one face"),
         ];
         for (statement, expected) in cases {
