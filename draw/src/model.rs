@@ -50,7 +50,7 @@ pub(super) enum Role {
     Solid,
     /// It casts none, and melts into the background.
     Endless,
-    /// It casts none, and is lit as if it faced the eye.
+    /// It casts none, lies in none, and has no sides: every lamp lights it in full.
     Line,
 }
 

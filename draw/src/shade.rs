@@ -35,15 +35,32 @@ pub(super) struct Shader<'a> {
 impl Shader<'_> {
     /// The colour of a facet in a pixel.
     pub(super) fn color(&self, facet: &Facet, skin: &Skin, fragment: Fragment) -> Vec3 {
-        let Vertex { place, normal, tint } = fragment.at;
+        let place = fragment.at.place;
         let eye = (-place).normalize_or(Vec3::Z);
+        let light =
+            if skin.role == Role::Line { self.along(skin, place) } else { self.lit(facet, skin, fragment, eye) };
+        let color = self.eye.haze(place).through(soften(light));
+        if skin.role == Role::Endless {
+            let sky = self.eye.air.sky.at(Vec2::new(fragment.x as f32, fragment.y as f32) + 0.5);
+            return sky.lerp(color, smooth(facet.flat.dot(eye).abs() / MELTING));
+        }
+        color
+    }
+
+    /// The light that a line returns at a place. It has no side that could face a lamp or turn away, so it takes all of every
+    /// lamp's light, lest it be bright at one end and black at the other.
+    fn along(&self, skin: &Skin, place: Vec3) -> Vec3 {
+        let beams = self.lamps.iter().filter_map(|lamp| lamp.beam(place));
+        skin.emission + skin.ambient + beams.map(|beam| beam.color * skin.diffuse).sum::<Vec3>()
+    }
+
+    /// The light that a surface returns in a pixel to an eye in a direction.
+    fn lit(&self, facet: &Facet, skin: &Skin, fragment: Fragment, eye: Vec3) -> Vec3 {
+        let Vertex { place, normal, tint } = fragment.at;
         // Which side is seen is up to the flat triangle: near the outline of a round thing, smooth
         // normals already point away.
         let side = if facet.flat.dot(eye) >= 0.0 { 1.0 } else { -1.0 };
-        let (normal, flat) = match skin.role {
-            Role::Line => (eye, eye),
-            _ => (side * normal.normalize_or(facet.flat), side * facet.flat),
-        };
+        let (normal, flat) = (side * normal.normalize_or(facet.flat), side * facet.flat);
         let mut color = skin.emission + tint * skin.ambient * self.openness(normal, eye);
         for beam in self.lamps.iter().filter_map(|lamp| lamp.beam(place)) {
             let cosine = normal.dot(beam.from);
@@ -52,15 +69,10 @@ impl Shader<'_> {
                 let highlight = normal.dot(half).max(0.0).powf(skin.shininess);
                 let returned = cosine * tint * skin.diffuse + highlight * skin.specular;
                 let light = beam.color * returned;
-                let casts = skin.role != Role::Line && light.max_element() > FAINT;
-                let passing = if casts { self.passing(place, flat, &beam, fragment) } else { 1.0 };
+                let passing =
+                    if light.max_element() > FAINT { self.passing(place, flat, &beam, fragment) } else { 1.0 };
                 color += (SHADOW_LIGHT + (1.0 - SHADOW_LIGHT) * passing) * light;
             }
-        }
-        let color = self.eye.haze(place).through(soften(color));
-        if skin.role == Role::Endless {
-            let sky = self.eye.air.sky.at(Vec2::new(fragment.x as f32, fragment.y as f32) + 0.5);
-            return sky.lerp(color, smooth(flat.dot(eye) / MELTING));
         }
         color
     }

@@ -149,6 +149,26 @@ fn streaks_and_shadows_follow_dots() {
 }
 
 #[test]
+fn a_straight_line_in_parallel_light_is_alike_all_along() {
+    let tangent = Camera::default().xfov.tan();
+    let colors = |direction: Vec3| {
+        let end = |side: f32| 3.0 * Vec3::new(side * tangent, 0.0, -1.0);
+        let material = Material { diffuse: Vec3::ONE, specular: 0.5 * Vec3::ONE, ..Material::default() };
+        let lines = vec![super::Line { a: end(-1.0), b: end(1.0), material }];
+        let lights = vec![Light::Directional { color: 0.5 * Vec3::ONE, direction }];
+        let image = frame(&Stage { lines, lights, ..Stage::default() }, &[], &[]);
+        let column = |x: u32| (0..HEIGHT).map(|y| image[(x, y)].0[0]).max().unwrap_or(0);
+        (10..WIDTH - 10).map(column).collect::<Vec<_>>()
+    };
+    let first = colors(Vec3::NEG_Z)[0];
+    assert!(first > 50, "{first}");
+    for direction in [Vec3::NEG_Z, Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::new(1.0, -1.0, -0.2)] {
+        let colors = colors(direction);
+        assert!(colors.iter().all(|&color| color.abs_diff(first) <= 1), "{direction} {colors:?}");
+    }
+}
+
+#[test]
 fn nothing_that_is_not_finite_is_drawn() {
     let sound = stage(vec![wall(3.0, Material::default())]);
     let mut broken = sound.clone();
