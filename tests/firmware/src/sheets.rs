@@ -32,7 +32,7 @@ const PARTICLES: usize = 34;
 const TRIANGLES: usize = 40;
 const HINGES: usize = 51;
 const SPRINGS: usize = 49;
-const COLUMNS: usize = 289;
+const COLUMNS: usize = 290;
 const KEPT: usize = 88;
 
 const _: () = assert!(points(FLAG) <= PARTICLES && points(STRIP) + points(COVER) == PARTICLES);
