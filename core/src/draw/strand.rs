@@ -77,8 +77,8 @@ pub fn strands(state: &State<'_>, lock: &Lock, light: &StrandLight, into: &mut [
     let numbers = (0..lock.count).flat_map(|strand| (0..segments).map(move |i| (strand, i)));
     let mut looks = Looks::of(state);
     let line = |(strand, i): (u32, u32)| {
-        let base = lock.first + strand * lock.points;
-        let row = |i: u32| state.springs.row(base + i);
+        let base = lock.first.checked_add(strand.checked_mul(lock.points)?)?;
+        let row = |i: u32| state.springs.row(base.checked_add(i)?);
         let rows = [row(i)?, row(i + 1)?];
         // At each end the direction is that from neighbour to neighbour.
         let beside = [i.checked_sub(1).and_then(row), Some(i + 2).filter(|&i| i < lock.points).and_then(row)];

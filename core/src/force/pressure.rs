@@ -89,8 +89,10 @@ fn third_of_area([a, b, c]: [Vec3; 3]) -> Vec3 {
 
 impl<T: AsRef<[[u32; 3]]> + Sync> Force for Pressure<T> {
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        if let Some(inside) = self.inside(state) {
-            self.add_slope(state, rows, self.amount / inside.volume - self.outside, total);
+        let Some(inside) = self.inside(state) else { return };
+        let factor = self.amount / inside.volume - self.outside;
+        if factor.abs() < f32::INFINITY {
+            self.add_slope(state, rows, factor, total);
         }
     }
 
