@@ -334,7 +334,7 @@ fn a_capacity_below_the_beginning_is_remarked_on() {
 #[test]
 fn scn_that_is_hardly_meant_is_remarked_on_where_it_stands() {
     let text = "\nparticle 0 0 0 0 0 0 1 0 0 1.5 0 -1\n particle_source 1 0 0 -1 0 -1  1 1 4  sphere 0 0 0 1\n\
-                particle_spring 0 0 1 1 1";
+                particle_spring 0 0 1 -1 -2";
     let folder = Folder::with("a.scn", text);
     warned(
         &folder,
@@ -343,6 +343,8 @@ fn scn_that_is_hardly_meant_is_remarked_on_where_it_stands() {
             "a.scn:2:1: particle: elasticity: 1.5 is above 1",
             "a.scn:3:2: particle_source: elasticity: -1 is below 0",
             "a.scn:4:1: particle_spring: ends: the spring joins particle 0 to itself",
+            "a.scn:4:1: particle_spring: ks: -1 is below 0",
+            "a.scn:4:1: particle_spring: kd: -2 is below 0",
         ],
     );
 }
@@ -409,7 +411,7 @@ fn a_file_in_other_letters_is_suggested() {
     }
     folder.write("a.json", r#"{"scenery": [{"shape": {"mesh": "Cube.off"}}]}"#);
     for (args, meant) in [
-        ("run a.json --steps 1", "; did you mean cube.off?"),
+        ("run a.json --steps 1", "; did you mean cube.off? (line 1)"),
         ("run A.json", "; did you mean a.json?"),
         ("check Parts/../A.json", "; did you mean a.json?"),
         ("compare --mesh CUBE.off --repeat 1", "; did you mean cube.off?"),

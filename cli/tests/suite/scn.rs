@@ -44,7 +44,7 @@ end
 line 1  0 0 0  1 1 1
 particle 1e-3 0 0  0 0 0  2 0 0 0 0 -1
 particle_spring 2 0  1 100 2
-particle_spring 0 1  0 -1 0
+particle_spring 0 1  0 1 0
 particle_source 1 0 .1 .2 3 1  4 5 6  sphere 1 2 3 4
 particle_source 1 0 0 0 0 -1  0 0 0  cylinder 1 2 3 4 5
 particle_source 1 0 0 0 0 -1  0 0 0  cone 1 2 3 4 5
@@ -137,7 +137,7 @@ fn everything() -> SceneFile {
             Particle { mass: 0.0, fixed: true, lifetime: -1.0, material: Some(0), ..still },
             Particle { position: v(1e-3, 0.0, 0.0), mass: 2.0, ..still },
         ],
-        springs: vec![Spring::new([2, 0], 1.0, 100.0).damped(2.0), Spring::new([0, 1], 0.0, -1.0)],
+        springs: vec![Spring::new([2, 0], 1.0, 100.0).damped(2.0), Spring::new([0, 1], 0.0, 1.0)],
         emitters,
         forces: vec![
             ForceKind::Gravity(Gravity { acceleration: v(0.0, -9.8, 0.0) }),

@@ -1,7 +1,7 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
 use super::references::{MAX_GROUPS, MAX_MATERIALS};
-use super::remarks::{MOST, odd_elasticity, odd_ends};
+use super::remarks::{MOST, odd_elasticity, odd_ends, odd_strength};
 use super::scn::{Command, Index, Located, Place, Problem, ScnError, Source, commands};
 use super::{Camera, Files, Group, Item, Light, Material, SceneError, SceneFile, beside};
 use crate::emit::{Emitter, Spread, Varied};
@@ -201,6 +201,8 @@ impl Reader<'_> {
             }
             Command::Spring { ends, rest_length, ks, kd } => {
                 self.remark(scope, place, name, odd_ends(ends.map(|end| end.value)), "ends");
+                self.remark(scope, place, name, odd_strength(ks), "ks");
+                self.remark(scope, place, name, odd_strength(kd), "kd");
                 scope.springs.push((ends, Spring { kd, ..Spring::new([0; 2], rest_length, ks) }));
             }
             Command::Gravity(acceleration) => self.gravity = Some(Gravity { acceleration }),

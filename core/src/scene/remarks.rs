@@ -141,10 +141,8 @@ impl SceneFile {
     fn add_springs(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
         for (i, spring) in self.springs.iter().enumerate() {
             add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
-            let gains =
-                |number: f32| (number < 0.0).then(|| format!("{number} is below 0, so it gains energy without bound"));
-            add(format_args!("springs[{i}].ks"), gains(spring.ks));
-            add(format_args!("springs[{i}].kd"), gains(spring.kd));
+            add(format_args!("springs[{i}].ks"), odd_strength(spring.ks));
+            add(format_args!("springs[{i}].kd"), odd_strength(spring.kd));
         }
     }
 
@@ -439,6 +437,11 @@ fn odd_lifetime(Varied { mean, half_width }: Varied) -> Option<String> {
 /// A remark on odd ends of a spring.
 pub(super) fn odd_ends([a, b]: [i64; 2]) -> Option<String> {
     (a == b).then(|| format!("the spring joins particle {a} to itself, so it does nothing"))
+}
+
+/// A remark on an odd stiffness or damping of a spring.
+pub(super) fn odd_strength(number: f32) -> Option<String> {
+    (number < 0.0).then(|| format!("{number} is below 0, so the spring gains energy without bound"))
 }
 
 fn odd_friction(Friction { static_, kinetic }: Friction) -> Option<String> {
