@@ -49,7 +49,7 @@ impl Run {
         out.1.or(self.format).unwrap_or(RecordFormat::Csv)
     }
 
-    /// What it was given to record by, and has no use for.
+    /// Options on recording that it was given and has no use for, each in words.
     pub(super) fn idle(&self) -> Vec<String> {
         let is_standard = |(_, format): &(PathBuf, Option<RecordFormat>)| format.is_none();
         let has_lines = |out: &(PathBuf, Option<RecordFormat>)| matches!(self.format(out), RecordFormat::Jsonl);

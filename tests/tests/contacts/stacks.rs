@@ -171,7 +171,7 @@ fn who_finds_no_room_is_the_same_whatever_the_index() {
     }
 }
 
-/// What lies on each other is borne by what lies below, whatever somebody does who touches nobody.
+/// Balls that lie on each other are borne by those below, whatever somebody does who touches nobody.
 #[test]
 fn a_stack_stands_whatever_goes_on_elsewhere() {
     let mut round = 0;

@@ -94,7 +94,8 @@ fn move_as_one(kept: &Kept<'_>, work: &mut Work<'_>, members: &[u32]) {
     let there = || members.iter().map(|&i| i as usize).filter(|&i| kept.rows[i] != NOBODY);
     let is_free = |work: &Work<'_>, i: usize| weight[i] > 0.0 && work.held[i] == 0;
     let (mut mass, mut middle, mut way, mut fixed) = (0.0, Vec3::ZERO, Vec3::ZERO, None);
-    let origin = work.from[members[0] as usize];
+    // The first of them may be gone.
+    let Some(origin) = there().next().map(|first| work.from[first]) else { return };
     for i in there() {
         let gone = work.now[i] - work.from[i];
         if is_free(work, i) {
@@ -230,5 +231,31 @@ impl Whole {
 
     fn turn(&self) -> Vec3 {
         turn_of(self.spread, self.torque)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lists::demand;
+    use super::*;
+    use alloc::vec;
+
+    #[test]
+    fn a_zone_goes_on_without_those_who_are_gone() {
+        const COUNTS: [usize; 2] = [3, 1];
+        let demand = demand(COUNTS);
+        let (mut step, mut scratch) = (vec![0; demand.step.fixed], vec![0; demand.scratch.fixed]);
+        let kept = Kept::of(&mut step, COUNTS).expect("the memory is asked for");
+        let mut work = Work::of(&mut scratch, COUNTS).expect("the memory is asked for");
+        kept.rows.copy_from_slice(&[NOBODY, 0, 1]);
+        kept.weight.copy_from_slice(&[0.0, 1.0, 1.0]);
+        work.from.copy_from_slice(&[Vec3::NAN, Vec3::ZERO, Vec3::X]);
+        work.now.copy_from_slice(&[Vec3::NAN, Vec3::Y, Vec3::new(1.5, 1.0, 0.0)]);
+        work.zone.fill(0);
+        move_all(&kept, &mut work);
+        // They go as one, and share what they had along their line.
+        let ways = [1, 2].map(|i| work.now[i] - work.from[i]);
+        assert!(ways.iter().all(|way| (*way - Vec3::new(0.25, 1.0, 0.0)).length() < 1e-6), "{ways:?}");
+        assert_eq!(work.moved[0], Vec3::ZERO);
     }
 }
