@@ -61,6 +61,33 @@ fn a_crowd_is_there_by_the_time_and_let_go_by_every_method_and_step() {
     }
 }
 
+/// Where leading begins and ends between two steps it does for all stages of a method alike, those at the end of the step before included.
+#[test]
+fn a_goal_acts_in_the_steps_of_its_time_alone() {
+    for (i, fps) in [60_u32, 100, 240].into_iter().enumerate() {
+        for method in methods(i) {
+            let point = Shape::Sphere(Sphere { center: Vec3::Y * 5.0, radius: 0.0 });
+            let led = Goal::<Mesh<'_>> { start: 1.0, release: Some(4.0), against: Some(G), ..Goal::new(point, 2.5) };
+            let (start, forces) = ([Particle::REST; 1], (Gravity { acceleration: G }, led));
+            let scene = Scene { start: &start, forces: &forces, integrator: &method, ..Scene::EMPTY };
+            let mut system = started(&scene, 1, 1);
+            let mut frame = 0;
+            let mut to = |system: &mut System<Heap>, seconds: u64| {
+                while frame < seconds * u64::from(fps) {
+                    frame += 1;
+                    system.step_to(&scene, Time::frame(frame, fps));
+                }
+                system.particles().velocity[0]
+            };
+            let before = to(&mut system, 1);
+            assert!((before - G).length() < 1e-4, "{} at {fps}: {before} m/s before", method.name());
+            let held = to(&mut system, 4);
+            let after = to(&mut system, 5) - held;
+            assert!(held.length() < 1e-2 && (after - G).length() < 1e-3, "{} at {fps}: {held}, {after} m/s", method.name());
+        }
+    }
+}
+
 #[test]
 fn places_are_spread_over_a_mesh_and_are_each_ones_own() {
     let (vertices, triangles) = icosahedron();

@@ -33,15 +33,15 @@ pub(super) fn first_touch(path: &Path, reach: f32, slack: f32) -> (Option<f32>, 
     let touch = (0..count).find_map(|i| {
         let begun = part(i, 0.0);
         let piece = path.piece(&cubic, [begun, part(i + 1, 0.0)], 0.0);
-        let parts = along_chord(piece.from, piece.step(), reach, slack)?;
+        let parts = along_chord(piece.from, piece.step(), reach, [slack, slack / f32::from(count)])?;
         let [found, nearest] = parts.map(|share| part(i, share));
         Some(on_path(path, reach, [begun, found, nearest]))
     });
     (touch, chords > MAX_CHORDS)
 }
 
-/// The fractions of a chord at which it comes within reach and is nearest.
-fn along_chord(offset: Vec3, step: Vec3, reach: f32, slack: f32) -> Option<[f32; 2]> {
+/// The fractions of a chord at which it comes within reach and is nearest. `part` is what it may be wrong by of the slack, the more chords there are the less.
+fn along_chord(offset: Vec3, step: Vec3, reach: f32, [slack, part]: [f32; 2]) -> Option<[f32; 2]> {
     let (square, closing) = (step.dot(step), -offset.dot(step));
     if !(closing > 0.0 && square > 0.0) {
         return None;
@@ -53,7 +53,7 @@ fn along_chord(offset: Vec3, step: Vec3, reach: f32, slack: f32) -> Option<[f32;
     }
     if offset.dot(offset) <= reach * reach {
         // Those that walls hold in an overlap come no closer, but for rounding in their places.
-        return (closing > ROUNDING * slack * length(offset)).then_some([0.0, nearest]);
+        return (closing > ROUNDING * part * length(offset)).then_some([0.0, nearest]);
     }
     // From the point of nearest approach of the whole line back: no difference of large squares.
     let middle = closing / square;

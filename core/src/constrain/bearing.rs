@@ -1,14 +1,26 @@
 //! Loads of particles: constraints lay something on them, and others solve for them with that.
 
 use super::Bodies;
+use core::cmp::max;
 use glam::Vec3;
+
+/// What [`Load::solved`](super::load::Load) is of a particle that is solved for with others, and of one that bears what is laid on it there.
+const JOINED: u32 = 1;
+const BEARS: u32 = 2;
 
 impl Bodies<'_> {
     /// Says as a sub-step is prepared that a constraint bears what is laid on a particle: it solves for the particle with [that](Self::load), and
     /// says when it [takes both up](Self::take_up) and [puts them down](Self::put_down).
     pub fn bear(&mut self, row: usize) {
         if let Some(load) = self.loads.get_mut(row) {
-            load.bears = 1;
+            load.solved = BEARS;
+        }
+    }
+
+    /// Says as a sub-step is prepared that a constraint solves for a particle and many others at once, without what is laid on it.
+    pub fn join(&mut self, row: usize) {
+        if let Some(load) = self.loads.get_mut(row) {
+            load.solved = max(load.solved, JOINED);
         }
     }
 
@@ -26,10 +38,19 @@ impl Bodies<'_> {
 
     /// Bears all that is laid on particles by their place in the scene's start.
     pub(super) fn bear_all(&mut self, particles: &[u32]) {
+        self.each_of(particles, Self::bear);
+    }
+
+    /// Joins all of these, likewise.
+    pub(super) fn join_all(&mut self, particles: &[u32]) {
+        self.each_of(particles, Self::join);
+    }
+
+    fn each_of(&mut self, particles: &[u32], then: fn(&mut Self, usize)) {
         let particles = if self.loads.is_empty() { &[] } else { particles };
         for &particle in particles {
             if let Some(row) = self.row_of_start(particle) {
-                self.bear(row);
+                then(self, row);
             }
         }
     }
@@ -37,7 +58,13 @@ impl Bodies<'_> {
     /// Tells whether what is laid on a particle is borne.
     #[must_use]
     pub fn is_borne(&self, row: usize) -> bool {
-        self.loads.get(row).is_some_and(|load| load.bears > 0)
+        self.loads.get(row).is_some_and(|load| load.solved == BEARS)
+    }
+
+    /// Tells whether a constraint solves for a particle and many others at once, with what is laid on it or without.
+    #[must_use]
+    pub fn is_joined(&self, row: usize) -> bool {
+        self.loads.get(row).is_some_and(|load| load.solved > 0)
     }
 
     /// Says as a sub-step is prepared that one more constraint holds a particle, or the body of which it is the first, to others.

@@ -1,14 +1,13 @@
 //! The energy of what nothing holds: a sub-step in which it is solved gives it none.
 
 use super::Bodies;
+use super::bisect::bisect;
 use super::turn::{Turn, keeping_by, nearest, outer, solve_thin};
 use super::whole::{Group, Whole, turn_on};
 use crate::index::between;
 use crate::math::{dot, max, min};
 use glam::{Mat3, Vec3};
 
-/// How often the way to where it would be as a rigid body is halved.
-const HALVINGS: u32 = 6;
 /// The least share of what is no motion of a rigid body that is left without that.
 const LEAST: f32 = 0.5;
 /// The share of the energy of turning that may be rounding.
@@ -204,13 +203,11 @@ impl Free<'_, '_> {
 
     /// Leaves as much of their ways from their goals as fits, to a share of all of them.
     fn halve(&mut self, origin: Vec3, mut fits: impl FnMut(&Self) -> bool) {
-        let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let next = 0.5 * (least + far);
-            self.stiffen(origin, next / now);
-            now = next;
-            *if fits(self) { &mut least } else { &mut far } = now;
-        }
-        self.stiffen(origin, least / now);
+        let mut now = 1.0;
+        bisect(|share| {
+            self.stiffen(origin, share / now);
+            now = share;
+            fits(self)
+        });
     }
 }

@@ -13,8 +13,9 @@ pub(crate) struct Load {
     pub(super) moment: Vec3,
     /// How far the particle has been moved with it \[m\], and how much faster \[m/s\].
     pub(super) by: [Vec3; 2],
-    /// One if a constraint bears what is laid on the particle; and the number of those that hold it, or the body that it is the first of.
-    pub(super) bears: u32,
+    /// One if a constraint solves for the particle and others at once, two if it bears what is laid on it besides; and the number of those that hold it, or
+    /// the body that it is the first of.
+    pub(super) solved: u32,
     pub(super) holders: u32,
     /// One if the particle has been moved to where its velocity leads.
     pub(super) caught_up: u32,

@@ -7,6 +7,7 @@
 
 mod attach;
 mod bearing;
+mod bisect;
 mod bodies;
 mod budget;
 mod contacts;
@@ -26,6 +27,7 @@ mod sheet_contacts;
 mod shell;
 mod strain_limits;
 mod strand;
+mod thread;
 mod tie;
 mod turn;
 mod union;

@@ -65,9 +65,14 @@ impl<M> Goal<M> {
     }
 
     /// How it leads, if it does.
-    fn lead(&self, now: Time) -> Option<Lead> {
-        let is_over = self.release.is_some_and(|release| now >= Time::from_seconds(release));
-        if now < Time::from_seconds(self.start) || is_over || !(self.settle > 0.0) {
+    fn lead(&self, State { time: now, since, .. }: &State<'_>) -> Option<Lead> {
+        let (now, since) = (*now, *since);
+        // At the instant itself those methods ask as well for whom a step ends there.
+        let has_come = |seconds: f32| {
+            let instant = Time::from_seconds(seconds);
+            since >= instant || now > instant
+        };
+        if !has_come(self.start) || self.release.is_some_and(has_come) || !(self.settle > 0.0) {
             return None;
         }
         let left = (Time::from_seconds(self.arrive) - now).seconds() - 4.0 * self.settle;
@@ -103,14 +108,14 @@ impl<M: Surface + Sync> Force for Goal<M> {
     }
 
     fn add_to(&self, state: &State<'_>, rows: Range<usize>, total: &mut [Vec3]) {
-        let Some(lead) = self.lead(state.time) else { return };
+        let Some(lead) = self.lead(state) else { return };
         for (total, row) in total.iter_mut().zip(rows) {
             *total += self.pull(state, row, &lead).unwrap_or(Vec3::ZERO);
         }
     }
 
     fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
-        let Some(Lead { stiffness, damping }) = self.lead(state.time) else { return };
+        let Some(Lead { stiffness, damping }) = self.lead(state) else { return };
         let factor = change.position * stiffness + change.velocity * damping;
         for (row, (total, &along)) in total.iter_mut().zip(change.along).enumerate() {
             if self.leads(state, row) {
@@ -120,7 +125,7 @@ impl<M: Surface + Sync> Force for Goal<M> {
     }
 
     fn add_stiffness(&self, state: &State<'_>, weights: [f32; 2], total: &mut [Vec3]) {
-        let Some(Lead { stiffness, damping }) = self.lead(state.time) else { return };
+        let Some(Lead { stiffness, damping }) = self.lead(state) else { return };
         let factor = weights[0] * stiffness + weights[1] * damping;
         for (row, total) in total.iter_mut().enumerate() {
             if self.leads(state, row) {
@@ -132,7 +137,7 @@ impl<M: Surface + Sync> Force for Goal<M> {
     /// All of its work: it has no potential.
     #[cfg(feature = "std")]
     fn power(&self, state: &State<'_>) -> f64 {
-        let Some(lead) = self.lead(state.time) else { return 0.0 };
+        let Some(lead) = self.lead(state) else { return 0.0 };
         let work = |row: usize| {
             let (pull, v) = (self.pull(state, row, &lead)?, state.velocity[row]);
             Some((0..3).map(|axis| f64::from(pull[axis]) * f64::from(v[axis])).sum::<f64>())

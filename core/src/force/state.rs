@@ -16,6 +16,9 @@ use glam::Vec3;
 pub struct State<'a> {
     /// The instant.
     pub time: Time,
+    /// The instant at which the part of a step began that a method looks for forces in; outside of one, `time`. What is switched on or off at an
+    /// instant, is so for parts that begin then or later, whatever instants a method asks for.
+    pub since: Time,
     /// Positions \[m\].
     pub position: &'a [Vec3],
     /// Velocities \[m/s\].
@@ -59,6 +62,7 @@ impl<'a> State<'a> {
     /// Nobody.
     pub(crate) const EMPTY: State<'static> = State {
         time: Time::ZERO,
+        since: Time::ZERO,
         position: &[],
         velocity: &[],
         radius: &[],
@@ -102,6 +106,7 @@ impl<'a> State<'a> {
         let len = position.len();
         State {
             time,
+            since: time,
             position,
             velocity,
             radius: &self.radius[..len],

@@ -42,7 +42,7 @@ impl Tile<'_> {
         if old < len {
             let (words, memory, lasting) = scratch.moving();
             let custom = attributes.custom(kept, layout.capacity());
-            let mut field = scene.field(attributes, custom, old, (words, lasting), None, observer);
+            let mut field = scene.field(attributes, custom, (old, now), (words, lasting), None, observer);
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, substep.during, memory);
             report.effort.found(&field.finder.finding);

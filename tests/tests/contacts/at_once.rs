@@ -149,7 +149,8 @@ fn a_column_that_loses_some_comes_to_rest() {
                     let scene = over_a_floor(&start, method, substeps);
                     let mut system = started(&scene, 3, 1);
                     let mut least = energy(&system, 9.8);
-                    let slack = 0.01 * least;
+                    // What the blow has pressed into each other rises again.
+                    let slack = 0.0125 * least;
                     let case = format!("{elasticity}, {rate}/{substeps}, {method}, {mass} kg above");
                     for i in 1..=(6.0 * rate) as u32 {
                         system.step(&scene, Time::from_seconds_f64(f64::from(i) / rate) - system.time());
@@ -158,7 +159,7 @@ fn a_column_that_loses_some_comes_to_rest() {
                         least = now.min(least);
                     }
                     let fastest = system.particles().velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
-                    assert!(fastest < 0.05, "{case}: {fastest} m/s");
+                    assert!(fastest < 1e-3, "{case}: {fastest} m/s");
                 }
             }
         }

@@ -206,8 +206,9 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
         self.links() == 0
     }
 
-    fn prepare(&self, _: &mut Bodies<'_>, share: &mut Share<'_>) {
+    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         share.claim(*b"rope", &[]);
+        bodies.join_all(self.particles.as_ref());
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -6,6 +6,7 @@ use super::pieces::{Piece, Roll};
 use super::plate::Shape;
 use super::solver::{NOBODY, Solver, Vectors};
 use super::stored::Stored;
+use crate::constrain::bisect::bisect;
 use crate::constrain::budget::{Budget, Free};
 use crate::constrain::turn::{outer, turn_of};
 use crate::constrain::walls::Wall;
@@ -20,8 +21,6 @@ const SUMS: usize = 8;
 const EVEN: f32 = 1e-3;
 /// Rounds in which a piece that bears something is brought to its momenta.
 const LADEN_ROUNDS: u32 = 4;
-/// How often the way of what is pressed by walls is halved.
-const SHORTENED: u32 = 6;
 /// The sine of the angle by which a wall has to lean out of others to be another.
 const LEVEL: f32 = 1e-3;
 
@@ -157,35 +156,32 @@ impl Solver<'_> {
     fn hold_short(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>, most: f32, given: &Given) {
         let (h, slide) = (bodies.substep.seconds(), self.along_walls(bodies, piece));
         let along = given.push.dot(slide);
-        let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
-        for round in 0..=SHORTENED {
-            // At last the longest that fits.
-            let next = if round < SHORTENED { 0.5 * (least + far) } else { least };
+        let mut now = 1.0;
+        let longest = bisect(|next| {
             let share = next / now;
+            now = next;
             for row in piece.rows.iter().map(|&row| row as usize) {
                 let from = bodies.before[0][row] + slide * h;
                 bodies.position[row] = from + (bodies.position[row] - from) * share;
                 bodies.velocity[row] = slide + (bodies.velocity[row] - slide) * share;
             }
-            if round < SHORTENED {
-                now = next;
-                let fits = self.seen(bodies, piece) <= most + along + (given.work - along) * now;
-                *if fits { &mut least } else { &mut far } = now;
-            }
-        }
-        bodies.report.caps.crushed += u64::from(least == 0.0);
+            self.seen(bodies, piece) <= most + along + (given.work - along) * next
+        });
+        bodies.report.caps.crushed += u64::from(longest == 0.0);
     }
 
-    /// How the middle of a piece goes along all walls that press it: they take none of that if they are smooth.
+    /// How the middle of a piece goes along all walls that press it, as forces have it: they take none of that if they are smooth, and what solutions are
+    /// wrong by would drive it.
     fn along_walls(&self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> Vec3 {
         let walls = || piece.members.iter().filter_map(|&i| self.walls.get(i as usize)).filter(|wall| wall.is_met());
         if walls().any(Wall::is_rough) {
             return Vec3::ZERO;
         }
         let (mut mass, mut drift, mut across) = (0.0, Vec3::ZERO, [Vec3::ZERO; 3]);
-        for row in piece.rows.iter().map(|&row| row as usize) {
+        for (&number, &row) in piece.members.iter().zip(piece.rows) {
+            let row = row as usize;
             mass += bodies.mass[row];
-            drift += bodies.velocity[row] * bodies.mass[row];
+            drift += self.free(bodies, number as usize, row) * bodies.mass[row];
         }
         let mut along = drift / mass;
         for normal in walls().flat_map(Wall::normals) {
@@ -197,6 +193,12 @@ impl Solver<'_> {
             }
         }
         along
+    }
+
+    /// How fast a particle would be if the shell and its walls had done nothing in the sub-step \[m/s\].
+    fn free(&self, bodies: &Bodies<'_>, number: usize, row: usize) -> Vec3 {
+        let Vectors { shift, met, .. } = &self.vectors;
+        bodies.velocity[row] - (met[number] + shift[number]) / bodies.substep.seconds()
     }
 
     /// The energy of a piece, of strain and of motion \[J\].

@@ -1,8 +1,9 @@
 //! Bending of triangles about their common edges.
 
-use super::membrane::{Cell, Strain, frame};
+use super::membrane::{Cell, Strain};
 use super::step::Step;
 use crate::cloth::Hinge;
+use crate::constrain::thread::warp_and_weft;
 use crate::math::{angle, dot, length, max, min, sqrt};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
@@ -96,7 +97,7 @@ impl RestFold {
         let side = |far: Vec3, sign: f32| {
             let up = far - e * (dot(far, e) / dot(e, e));
             let height = length(up);
-            let [u, v] = frame([e, far], warp)?;
+            let [u, v] = warp_and_weft([e, far], warp)?;
             let [x, y] = [dot(up, u) / height, dot(up, v) / height];
             Some([x * x, y * y, core::f32::consts::SQRT_2 * x * y].map(|part| sign * part / height))
         };

@@ -2,7 +2,8 @@
 
 use super::ShellParams;
 use super::step::Step;
-use crate::math::{dot, length, max, sqrt};
+use crate::constrain::thread::warp_and_weft;
+use crate::math::{dot, max, sqrt};
 use glam::{Mat3, Vec3};
 
 /// A triangle at rest.
@@ -30,27 +31,11 @@ pub(super) struct Strain {
     pub(super) held: [f32; 3],
 }
 
-/// The unit vectors along warp and weft in the plane of a triangle with these edges; none if it is degenerate.
-pub(super) fn frame([e, f]: [Vec3; 2], warp: Vec3) -> Option<[Vec3; 2]> {
-    let normal = e.cross(f);
-    let size = length(normal);
-    // A triangle narrower than a millionth of its length has no plane.
-    if !(size > 1e-6 * max(dot(e, e), dot(f, f)) && size < f32::INFINITY) {
-        return None;
-    }
-    let normal = normal / size;
-    let flat = |v: Vec3| v - normal * dot(normal, v);
-    let (thread, edge) = (flat(warp), flat(e));
-    let along = if dot(thread, thread) > 1e-6 * dot(warp, warp) { thread } else { edge };
-    let u = along / length(along);
-    u.is_finite().then(|| [u, normal.cross(u)])
-}
-
 impl Cell {
     pub(super) const NONE: Self = Self { inverse: [0.0; 4], area: 0.0 };
 
     pub(super) fn at_rest(edges: [Vec3; 2], warp: Vec3) -> Self {
-        let Some([u, v]) = frame(edges, warp) else { return Self::NONE };
+        let Some([u, v]) = warp_and_weft(edges, warp) else { return Self::NONE };
         let [a, b] = edges.map(|edge| [dot(edge, u), dot(edge, v)]);
         let twice = a[0] * b[1] - b[0] * a[1];
         let inverse = [b[1], -a[1], -b[0], a[0]].map(|x| x / twice);

@@ -1,6 +1,7 @@
 //! Triangles: their strains, and how each is held.
 
 use crate::constrain::Bodies;
+use crate::constrain::thread::warp_and_weft;
 use crate::math::{dot, largest, length, max, min, sqrt};
 use glam::Vec3;
 
@@ -49,17 +50,8 @@ impl Cell {
     pub(super) fn at_rest([e, f]: [Vec3; 2], warp: Vec3) -> Self {
         const NONE: Cell =
             Cell { inverse: [0.0; 4], area: 0.0, stress: [0.0; 3], left: [1.0, 1.0, 0.0], owed: [0.0; 3] };
-        let normal = e.cross(f);
-        let twice = length(normal);
-        // A triangle narrower than a millionth of its length has no plane.
-        if !(twice > 1e-6 * max(dot(e, e), dot(f, f)) && twice < f32::INFINITY) {
-            return NONE;
-        }
-        let normal = normal / twice;
-        let thread = warp - normal * dot(normal, warp);
-        let along = if dot(thread, thread) > 1e-6 * dot(warp, warp) { thread } else { e };
-        let u = along / length(along);
-        let v = normal.cross(u);
+        let Some([u, v]) = warp_and_weft([e, f], warp) else { return NONE };
+        let twice = length(e.cross(f));
         let [a, b] = [e, f].map(|edge| [dot(edge, u), dot(edge, v)]);
         let inverse = [b[1], -a[1], -b[0], a[0]].map(|x| x / twice);
         let is_sound = inverse.iter().all(|x| x.is_finite());

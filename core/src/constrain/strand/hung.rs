@@ -6,11 +6,10 @@
 use super::bounded::{Bounded, Course, frame};
 use super::joint::{Begun, Joint};
 use crate::constrain::Bodies;
+use crate::constrain::bisect::bisect;
 use crate::constrain::turn::Turn;
 use crate::math::{clamp, max, min, sqrt};
 
-/// How often the way of a sub-step is halved.
-const HALVINGS: u32 = 6;
 /// The least share of the speeds that is left without that.
 const LEAST: f32 = 0.5;
 /// The share of the strain with which a sub-step begins that it may give beside: what is wound up begins to writhe with far less than two steps of Newton's
@@ -64,14 +63,12 @@ impl Bounded<'_> {
         (joints, before): (&mut [Joint], &[Begun]),
         fits: impl Fn(&Bodies<'_>, &[Joint]) -> bool,
     ) {
-        let (mut now, mut least, mut far) = (1.0, 0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let next = 0.5 * (least + far);
-            self.go_back(bodies, joints, before, next / now);
-            now = next;
-            *if fits(bodies, joints) { &mut least } else { &mut far } = now;
-        }
-        self.go_back(bodies, joints, before, least / now);
+        let mut now = 1.0;
+        bisect(|share| {
+            self.go_back(bodies, joints, before, share / now);
+            now = share;
+            fits(bodies, joints)
+        });
     }
 
     /// Leaves such a share of the ways from where all were.

@@ -409,6 +409,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[u32]> + Sync> Constraint for Strands<P, L
         if share.claim(*b"stra", &[self.particles.as_ref().len(), self.points.as_ref().len()]) {
             self.learn(bodies, share.kept.fixed);
         }
+        bodies.join_all(self.particles.as_ref());
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -54,7 +54,11 @@ impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
         let is_borne = |number: &u32| bodies.row_of_start(*number).is_some_and(|row| bodies.is_borne(row));
         let [on_body, on_tied] = [self.to.as_ref().iter().any(is_borne), bodies.is_borne(tied)];
         let h = bodies.substep.seconds();
-        if !(h > 0.0 && (on_body || on_tied)) {
+        // Of two that are solved for apart, with many others each, neither knows what those about the other resist: laid on each other they would drive
+        // each other.
+        let is_joined = |number: &u32| bodies.row_of_start(*number).is_some_and(|row| bodies.is_joined(row));
+        let are_apart = bodies.is_joined(tied) && self.to.as_ref().iter().any(is_joined);
+        if !(h > 0.0 && (on_body || on_tied)) || are_apart {
             return None;
         }
         self.close(bodies, place)?;

@@ -22,7 +22,7 @@ pub use rope::TiedRope;
 /// that what a force β times the speed does, by an implicit step at the sub-step's end. A rigid tie keeps nothing of that speed.
 ///
 /// One iteration a sub-step, a few more where there is an offset, and as often as others move apart what one [bears](crate::constrain::Bodies::bear) of the other: a [`Shell`](super::Shell) is solved with what is
-/// tied to it rigidly, and rigid ties of a list are met again after each other. Elsewhere a tie that joins something light to what is n times as heavy, and is held by other constraints, is off by
+/// tied to it rigidly, unless that is solved with others apart (another shell, strands, a rope); and rigid ties of a list are met again after each other. Elsewhere a tie that joins something light to what is n times as heavy, and is held by other constraints, is off by
 /// about n g h² under its load. List it behind what it ties.
 ///
 /// While one of the particles is dead it does nothing, and neither does one with an offset from a triangle without area. In a

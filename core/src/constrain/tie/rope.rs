@@ -103,6 +103,7 @@ where
         for tie in self.ends.iter().flatten() {
             tie.know(bodies, &mut parts.next(tie.demand()));
         }
+        bodies.join_all(self.rope.particles.as_ref());
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -2,6 +2,7 @@
 
 use super::{NOBODY, Wall};
 use crate::constrain::Bodies;
+use crate::constrain::bisect::bisect;
 use crate::constrain::bodies::Change;
 use crate::constrain::contacts::bounce;
 use crate::math::{aside, dot, length, max};
@@ -16,8 +17,6 @@ const LEAST: f32 = 1e-3;
 /// So many times the friction of what rests a particle asks for that is no longer held. What rounds leave over is less and does not add up over
 /// sub-steps, as what slides does.
 const SLIPS: f32 = 1.25;
-/// Times that the share of elasticity by which walls would give energy is halved.
-const HALVINGS: u32 = 6;
 
 /// A body whose particles move as one, and how it answers a push at one of them.
 pub(in crate::constrain) struct Whole {
@@ -181,13 +180,11 @@ impl Whole {
         };
         let (mut is_settled, is_too_much) = bounces(walls, bodies, 1.0);
         if is_too_much {
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                let (_, is_too_much) = bounces(walls, bodies, middle);
-                *if is_too_much { &mut high } else { &mut low } = middle;
-            }
-            (is_settled, _) = bounces(walls, bodies, low);
+            bisect(|share| {
+                let (is_done, is_too_much) = bounces(walls, bodies, share);
+                is_settled = is_done;
+                !is_too_much
+            });
         }
         bodies.report.effort.capped += u64::from(!is_settled);
         for wall in walls.iter_mut().filter(|wall| wall.touch.is_on()) {
