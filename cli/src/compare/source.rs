@@ -42,7 +42,7 @@ pub(crate) fn sources(args: &Compare) -> Outcome<(Vec<Source>, Vec<usize>)> {
     let len = given.len();
     if let Some(n) = args.n.iter().find(|n| **n > len) {
         let name = given.name();
-        return Err(Failure::new(format!("{name}: has {len} points: expected --n {n} or more; lower --n")));
+        return Err(Failure::new(format!("{name}: has {len} points, --n asks for {n}: lower --n")));
     }
     Ok((vec![given], sorted(&args.n, &[len])))
 }

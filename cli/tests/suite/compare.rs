@@ -228,6 +228,8 @@ fn the_command_line_says_what_it_wants() {
         ("--at 3", "--scene"),
     ];
     folder.misuse("compare", &cases);
+    let answer = folder.run("compare --points a.csv --n 2,5000");
+    assert!(answer.error().ends_with("a.csv: has 2 points, --n asks for 5000: lower --n"), "{answer:?}");
     let answer = folder.run("compare --n 4e4 --structures brute");
     assert!(answer.error().contains("nobody is left to compare: every query would compute about 2e9 distances"));
     assert!(folder.run("compare --n 50 --out no/a.html").error().contains("there is no folder no"));
