@@ -130,7 +130,7 @@ pub(crate) struct Figure {
     pub(crate) spread: f64,
     /// The median over the best contestant's.
     pub(crate) ratio: f64,
-    /// Whether the best cannot be told apart from it.
+    /// Whether the best cannot be told apart from it, nor from anybody between both.
     pub(crate) ties: bool,
     /// Nodes or rows of cells looked at, for each point or query.
     pub(crate) visits: Option<f64>,
@@ -239,14 +239,16 @@ impl Case {
         ranking
     }
 
-    /// Holds all figures against the best.
+    /// Holds all figures against the best. Nobody ties with it who is slower than one who does not, however much his own times vary.
     pub(crate) fn rank(&mut self) {
         for workload in self.workloads() {
-            let Some(best) = self.ranking(workload).first().map(|(_, figure)| (*figure).clone()) else { continue };
+            let ranking = self.ranking(workload);
+            let Some(best) = ranking.first().map(|(_, figure)| (*figure).clone()) else { continue };
+            let behind = ranking.iter().find(|(_, figure)| !figure.is_like(&best)).map(|(_, figure)| figure.median);
             for figure in self.contestants.iter_mut().flat_map(|one| &mut one.figures) {
                 if figure.workload == workload {
                     figure.ratio = if best.median > 0.0 { figure.median / best.median } else { 1.0 };
-                    figure.ties = figure.is_like(&best);
+                    figure.ties = behind.is_none_or(|behind| figure.median < behind);
                 }
             }
         }

@@ -187,6 +187,23 @@ fn ratios_and_ties_are_held_against_the_best() {
 }
 
 #[test]
+fn nobody_slower_than_one_told_apart_ties_with_the_best() {
+    let mut case = case(100, &[("bvh", 100.0), ("brute", 124.0), ("quadtree", 142.0)]);
+    let advised = |case: &Case| advice::advise(std::slice::from_ref(case))[0].text.clone();
+    case.contestants[2].figures[1] = Figure::new(Workload::Count, vec![100.0, 142.0, 190.0], None);
+    case.rank();
+    let ties: Vec<_> = case.ranking(Workload::Count).iter().map(|(_, figure)| figure.ties).collect();
+    assert_eq!(ties, [true, false, false]);
+    let text = advised(&case);
+    assert!(text.starts_with("use bvh: 100 ns a point; brute takes 1.24 times as long"), "{text}");
+    // Where brute cannot be told apart either, the share is that of the slowest of those named.
+    case.contestants[1].figures[1] = Figure::new(Workload::Count, vec![90.0, 124.0, 160.0], None);
+    case.rank();
+    let text = advised(&case);
+    assert!(text.starts_with("use any of bvh, brute, quadtree: 100 ns a point, and they are within 42 %"), "{text}");
+}
+
+#[test]
 fn every_report_tells_the_same_figures() {
     let mut case = case(1000, &[]);
     for (name, scale) in [("grid", 1.0), ("kd", 2.0)] {
