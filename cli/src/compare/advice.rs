@@ -65,13 +65,13 @@ fn reason(subject: Subject, (best, a): (&Contestant, &Figure), (other, b): (&Con
     let (Some(a_tests), Some(b_tests), Some(a_visits), Some(b_visits)) = (a.tests, b.tests, a.visits, b.visits) else {
         return String::new();
     };
-    let (tests, query) = (subject.tests(), subject.query());
+    let (visits, tests, query) = (subject.visits(), subject.tests(), subject.query());
     let (mine, theirs) = ([a_visits, a_tests].map(digits), [b_visits, b_tests].map(digits));
     if mine == theirs {
-        return format!(", though both look at {} nodes and {} {tests} a {query}", mine[0], mine[1]);
+        return format!(", though both look at {} {visits} and {} {tests} a {query}", mine[0], mine[1]);
     }
     let mut reason = format!(
-        ": to find {} it looks at {} nodes and {} {tests} a {query}, {} at {} and {}",
+        ": to find {} it looks at {} {visits} and {} {tests} a {query}, {} at {} and {}",
         digits(a.found.unwrap_or_default()),
         theirs[0],
         theirs[1],

@@ -128,9 +128,12 @@ fn remarks(case: &Case) -> Vec<String> {
     all().filter_map(left_out).chain(all().filter_map(unlike)).collect()
 }
 
-/// The nodes and triangles that every query looked at.
+/// The boxes and triangles that every query looked at.
 fn work(case: &Case, report: &mut dyn Report) {
-    report.paragraph("nodes visited and triangles tested, for each query; counted, so the same on every machine");
+    report.paragraph(
+        "boxes looked at (nodes, cells; by brute force the triangles' own) and triangles tested (those whose box is met), for each query; \
+         counted, so the same on every machine",
+    );
     let all: Vec<_> = case.contestants.iter().filter(|one| one.build.nodes.is_some()).collect();
     let mut table = Table::default();
     table.column("", all.iter().map(|one| one.name.as_str()));
@@ -152,7 +155,7 @@ fn details(case: &Case, report: &mut dyn Report) {
     report.heading(3, &format!("In detail: {}, {} {}", case.of, thousands(case.n), case.subject.things()));
     let each = match case.subject {
         Subject::Points => ["nodes/pt", "tests/pt", "found/pt"],
-        Subject::Mesh => ["nodes/q", "tests/q", "hits/q"],
+        Subject::Mesh => ["boxes/q", "tests/q", "hits/q"],
     };
     for workload in case.workloads() {
         report.items(&[(workload.name(), workload.describe())]);
@@ -169,9 +172,9 @@ fn details(case: &Case, report: &mut dyn Report) {
         table.column(each[2], figures().map(|figure| figure.found.map(digits)));
         report.table(&table);
     }
-    let (query, tests) = (case.subject.query(), case.subject.tests());
+    let (query, visits, tests) = (case.subject.query(), case.subject.visits(), case.subject.tests());
     report.paragraph(&format!(
-        "all of it for each {query}; nodes, {tests} and finds are counted, not timed: the same on every machine"
+        "all of it for each {query}; {visits}, {tests} and finds are counted, not timed: the same on every machine"
     ));
 }
 

@@ -44,6 +44,11 @@ impl Subject {
         self.choose("distances", "triangles")
     }
 
+    /// What is looked at on the way there.
+    pub(crate) fn visits(self) -> &'static str {
+        self.choose("nodes", "boxes")
+    }
+
     /// The unit that times are given in, such as `ns a point`.
     pub(crate) fn unit(self, workload: Workload) -> &'static str {
         self.choose("ns a point", if workload.is_query() { "ns a query" } else { "ns a triangle" })
@@ -132,7 +137,7 @@ pub(crate) struct Figure {
     pub(crate) ratio: f64,
     /// Whether the best cannot be told apart from it, nor from anybody between both.
     pub(crate) ties: bool,
-    /// Nodes or rows of cells looked at, for each point or query.
+    /// Nodes or rows of cells looked at, for each point or query; of a mesh by brute force the boxes of triangles.
     pub(crate) visits: Option<f64>,
     /// Distances computed for each point, or triangles tested for each query.
     pub(crate) tests: Option<f64>,

@@ -29,7 +29,7 @@ fn a_small_comparison_on_meshes_is_told_in_every_format() {
         "terrain, 50 triangles: 60 segments",
         "verified against each other, all segments, and every triangle, 60 of each kind",
         "in ns a query, of the build in ns a triangle",
-        "nodes visited and triangles tested, for each query",
+        "boxes looked at (nodes, cells; by brute force the triangles' own)",
         "of a query, grows from 50 to 200 triangles",
         "Advice for terrain, 200 triangles",
         "  short: use ",

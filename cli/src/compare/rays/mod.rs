@@ -77,8 +77,8 @@ pub(super) fn method() -> Vec<String> {
          alike. A turn builds anew and asks all queries, one after the other by one thread. Looking at every triangle takes \
          long, so brute force is asked the first of the segments only; the table says how many."
             .into(),
-        "Nodes are nodes or cells that were looked at, triangles those whose own box the segment meets and which were \
-         therefore tested. Depth is the levels below the root, fullest the most triangles in a leaf or cell, and crowded the \
+        "Boxes are nodes or cells that were looked at, by brute force the triangles' own; triangles are those whose own box the segment meets \
+         and which were therefore tested. Depth is the levels below the root, fullest the most triangles in a leaf or cell, and crowded the \
          leaves left larger than they should be for want of memory. Bytes are what a structure needs once it is built, the \
          mesh itself not included; libraries that keep triangles in their own form include that."
             .into(),

@@ -124,6 +124,11 @@ fn every_structure_finds_what_a_loop_over_triangles_finds() {
                 let cost = tracer.cost(query, query.segments.len()).unwrap_or_default();
                 let most = (mesh.triangles().len() * query.segments.len()) as u64;
                 assert!(cost.tests <= 2 * most && (cost.tests > 0), "{structure}: {cost:?}");
+                // Brute force looks at all boxes, others at far fewer.
+                assert_eq!(
+                    (cost.visits == most, cost.visits < most),
+                    (structure == Structure::Brute, structure != Structure::Brute)
+                );
             }
             let built = tracer.built();
             assert!(built.nodes.is_some() && built.bytes_each.is_some_and(|bytes| bytes < 400.0), "{built:?}");

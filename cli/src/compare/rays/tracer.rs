@@ -61,6 +61,10 @@ impl Tracer for Own<'_> {
         for segment in query.segments.iter().take(asked) {
             sum += self.index.first_hit_counted(&self.mesh, segment).1;
         }
+        // Where there are no nodes, the boxes that are looked at are those of all triangles.
+        if self.index.structure() == Structure::Brute {
+            sum.visits += (asked.min(query.segments.len()) * self.mesh.triangles().len()) as u64;
+        }
         Some(sum)
     }
 }
