@@ -260,6 +260,19 @@ class Elsewhere(unittest.TestCase):
             self.equal(np.float32(mesh.get_vertices()), frame.places)
             self.equal(mesh.get_faces(), frame.faces)
 
+    def test_ovito_has_rooms(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for sides, pbc in ([4, 5, 6], (True, True, True)), ([4, 0, 6], (True, False, True)):
+                particles = [{"position": [-0.5, y, 2]} for y in (-3, 0, 7)]
+                scene = {"room": {"low": [-1, -2, 0], "sides": sides}, "particles": particles}
+                (Path(folder) / "a.json").write_text(json.dumps(scene))
+                command = [PROGRAM, "run", "a.json", "--steps", "1", "--out", "a.xyz"]
+                subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+                cell = import_file(str(Path(folder) / "a.xyz")).compute().cell
+                self.assertEqual(tuple(cell.pbc), pbc)
+                corner, wide = (-2, 5) if sides[1] else (-3, 10)
+                self.equal(cell[...], [[4, 0, 0, -1], [0, wide, 0, corner], [0, 0, 6, 0]])
+
     def meshes(self, path):
         return [found for found in import_file(path).compute().objects if type(found).__name__ == "TriangleMesh"]
 

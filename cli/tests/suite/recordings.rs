@@ -198,6 +198,30 @@ fn cloud(folder: &Folder, name: &str) -> Vec<DefaultElement> {
 }
 
 #[test]
+fn atoms_have_the_cell_of_their_room() {
+    let scene = |sides: &str, particles: &str| {
+        format!(r#"{{"room": {{"low": [-1, -2, 0.5], "sides": {sides}}}, "particles": [{particles}]}}"#)
+    };
+    let folder = Folder::with("a.json", r#"{"particles": [{}]}"#);
+    folder.run("run a.json --steps 1 --out a.xyz");
+    assert!(!folder.read("a.xyz").contains("Lattice"));
+    let three = r#"{"position": [0, -1, 2]}, {"position": [1, 2.5, 2]}, {"position": [2, 0, 2]}"#;
+    for (sides, particles, told) in [
+        ("[4, 5, 6.25]", three, r#"Lattice="4 0 0 0 5 0 0 0 6.25" Origin="-1 -2 0.5" pbc="T T T""#),
+        // Where space goes on the particles' own extent is told, or a metre.
+        ("[4, 0, 0]", three, r#"Lattice="4 0 0 0 3.5 0 0 0 1" Origin="-1 -1 2" pbc="T F F""#),
+        ("[4, 5, 0]", "", r#"Lattice="4 0 0 0 5 0 0 0 1" Origin="-1 -2 0" pbc="T T F""#),
+    ] {
+        folder.write("a.json", scene(sides, particles));
+        folder.run("run a.json --steps 1 --out a.xyz");
+        let text = folder.read("a.xyz");
+        assert!(text.lines().filter(|line| line.contains("Properties=")).all(|line| line.ends_with(told)), "{text}");
+        let points = folder.run("compare --points a.xyz --repeat 1");
+        assert_eq!(points.code, i32::from(particles.is_empty()), "{points:?}");
+    }
+}
+
+#[test]
 fn recordings_of_nothing_are_whole_files_too() {
     let folder = Folder::with("a.json", "{}");
     folder.run("run a.json --steps 1 --out a.csv --out a.jsonl --out a.ply --out a.xyz").fine();

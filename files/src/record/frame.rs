@@ -5,6 +5,7 @@ use super::solids::Surfaces;
 use crate::instant::nanoseconds;
 use pointmass::draw::Looks;
 use pointmass::force::Springs;
+use pointmass::index::Room;
 use pointmass::{Color, Columns, Heap, Scene, System, Time, Vec3, WHITE};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,6 +29,8 @@ pub struct Frame {
     pub(super) edges: Vec<[u32; 2]>,
     /// The surfaces of rigid bodies.
     pub(super) surfaces: Surfaces,
+    /// The room whose opposite faces are one, if there is one.
+    pub(super) room: Option<Room>,
 }
 
 /// An attribute of all particles.
@@ -139,7 +142,8 @@ impl Frame {
         let mut surfaces = Surfaces::default();
         let now = [state.position, state.velocity];
         plan.solids.iter().for_each(|solid| solid.add(&state.springs, now, &place, &mut surfaces));
-        Self { step, time, len: order.len(), columns, colors, faces, edges, surfaces }
+        let room = state.near.room().copied();
+        Self { step, time, len: order.len(), columns, colors, faces, edges, surfaces, room }
     }
 
     /// The columns of these names one after the other, all of them there and in single precision.
