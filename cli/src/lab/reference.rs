@@ -13,6 +13,8 @@ pub(crate) struct Reference {
     pub(crate) about: String,
     /// How far it may be off \[m\].
     pub(crate) error: f64,
+    /// How far the rounding of places takes it, one step like another \[m\].
+    pub(crate) rounding: f64,
     /// The largest coordinate \[m\].
     pub(crate) extent: f64,
     /// The energy that errors of energy are a share of \[J\], and what that is.
@@ -71,5 +73,12 @@ fn settled(problem: &Problem, (gap, dt, outturn): (f64, f64, Outturn)) -> Refere
         None => (places, format!("RK4 in steps of {dt:.3e} s (steps twice as long end {gap:.1e} m from there)"), gap),
     };
     let energy = energy.max(f64::MIN_POSITIVE);
-    Reference { places, about, error, extent, energy, energy_about }
+    let rounding = walk(extent, problem.duration / dt);
+    Reference { places, about, error, rounding, extent, energy, energy_about }
+}
+
+/// How far the rounding of coordinates up to so large \[m\] takes them in so many steps: each rounds by half a unit in the last place, up or
+/// down.
+pub(super) fn walk(extent: f64, steps: f64) -> f64 {
+    f64::from(f32::EPSILON) / 2.0 * extent * steps.sqrt()
 }

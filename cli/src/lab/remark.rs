@@ -6,6 +6,8 @@ use pointmass::Method;
 
 /// Errors of energy below this share are rounding.
 const KEPT: f64 = 2e-5;
+/// So many times what rounds up and down at random may come of rounding, which for a while goes one way.
+const ROUNDED: f64 = 8.0;
 /// How far an order may be off its theory.
 const OFF: f64 = 0.25;
 
@@ -131,10 +133,17 @@ impl Case {
         let is_poor = self.reference_error > 0.05 * worst && worst > 0.0;
         is_poor.then(|| {
             let error = digits(self.reference_error);
-            format!(
-                "the reference itself is uncertain by {error} m, as the motion is chaotic or not \
+            match self.reference_error <= ROUNDED * self.reference_rounding {
+                true => format!(
+                    "the reference itself is uncertain by {error} m, as places up to {} m are rounded in each of its steps: \
+                     smaller errors are rounding",
+                    digits(self.extent)
+                ),
+                false => format!(
+                    "the reference itself is uncertain by {error} m, as the motion is chaotic or not \
                      smooth; try a shorter --duration"
-            )
+                ),
+            }
         })
     }
 }

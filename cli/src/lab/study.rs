@@ -1,7 +1,7 @@
 //! The findings of the laboratory, as every report tells them.
 
 use super::problem::Problem;
-use super::reference::Reference;
+use super::reference::{Reference, walk};
 use super::trial::{Outturn, Trend, Trial, apart};
 use crate::outcome::Outcome;
 use crate::report::origin::Origin;
@@ -28,6 +28,8 @@ pub(crate) struct Case {
     /// The reference that they are held against, and how far that may be off \[m\].
     pub(crate) reference: String,
     pub(crate) reference_error: f64,
+    /// How far the rounding of places takes it \[m\].
+    pub(crate) reference_rounding: f64,
     /// Its largest coordinate \[m\].
     pub(crate) extent: f64,
     /// The energy that errors of energy are a share of \[J\], and what that is.
@@ -148,6 +150,7 @@ impl Case {
             duration: problem.duration,
             reference: reference.about.clone(),
             reference_error: reference.error,
+            reference_rounding: reference.rounding,
             extent: reference.extent,
             energy_scale: reference.energy,
             energy_scale_is: reference.energy_about.into(),
@@ -237,10 +240,8 @@ impl Bench<'_> {
             Some(_) => 0.0,
         };
         let (error, compared, unmatched) = apart(&outturn.places, &self.reference.places);
-        // Every step rounds by half a unit in the last place, up or down.
         let steps = (self.problem.duration / dt).max(outturn.effort.accepted as f64);
-        let walk = f64::from(f32::EPSILON) / 2.0 * self.reference.extent * steps.sqrt();
-        let floor = rounding.max(walk).max(self.reference.error);
+        let floor = rounding.max(walk(self.reference.extent, steps)).max(self.reference.error);
         let trend = outturn.track.trend();
         Ok(Point {
             dt,

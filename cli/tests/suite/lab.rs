@@ -136,6 +136,29 @@ fn collisions_and_scenes_without_particles_are_no_trouble() {
 }
 
 #[test]
+fn rounding_is_told_from_chaos() {
+    let uncertain = |case: &Value| {
+        let notes = case["notes"].as_array().into_iter().flatten().filter_map(Value::as_str);
+        notes.filter(|note| note.contains("uncertain")).collect::<Vec<_>>().join("; ")
+    };
+    // RK4 takes a parabola as it is: what errors there are come of rounding.
+    let thrown = "particle_gravity 0 -9.80665 0\nparticle 0.3 0 0 1 5 0 1 0 0 0 0 -1\n";
+    let folder = Folder::with("thrown.scn", thrown);
+    let note = uncertain(&case(&folder, "thrown.scn --duration 1 --integrators rk4"));
+    assert!(!note.contains("chaotic") && note.contains("rounded in each of its steps"), "{note}");
+    let one = |place: &str, speed: &str| format!(r#"{{"position": {place}, "velocity": {speed}}}"#);
+    let three = [
+        one("[1, 0, 0]", "[0, 0.4, 0]"),
+        one("[-0.5, 0.8, 0]", "[-0.3, -0.2, 0.1]"),
+        one("[-0.4, -0.7, 0.1]", "[0.3, -0.1, 0]"),
+    ];
+    let pull = r#"{"mutual_gravity": {"constant": 1, "softening": 0.02}}"#;
+    folder.write("three.json", format!(r#"{{"forces": [{pull}], "particles": [{}]}}"#, three.join(", ")));
+    let note = uncertain(&case(&folder, "three.json --duration 60 --dt 0.004,0.002 --integrators rk4"));
+    assert!(note.contains("chaotic"), "{note}");
+}
+
+#[test]
 fn the_command_line_says_what_it_wants() {
     let folder = Folder::with("a.scn", ROPE);
     let cases = [
