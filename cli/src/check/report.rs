@@ -16,7 +16,7 @@ use std::fmt::Write;
 const NOTES: [&str; 8] = [
     "A step is stable while nothing that should swing or come to rest grows. It is not accurate yet.",
     "At rest: the oscillations of the springs where the scene begins, as if each had its rest length there, without gravity \
-     and other forces; what only drifts is left out.",
+     and other forces; what only drifts is left out. Of too many to work out all, one tells what they stand at most.",
     "Every pose: the stiffness at each particle over its mass, as if all its springs pulled in one line, which no pose \
      exceeds near the springs' rest lengths. Springs that are damped more or less than others are taken at their worst.",
     "Contact: hits of balls that push each other apart give back no more energy than they take on average over how the steps fall \
@@ -193,7 +193,7 @@ fn oscillations(modes: &Oscillations) -> String {
 
 /// The largest step at rest.
 fn at_rest(stand: &Stand) -> String {
-    if stand.estimated { format!("about {}", limit(stand.at_rest)) } else { limit(stand.at_rest) }
+    if stand.estimated { format!("at most {}", limit(stand.at_rest)) } else { limit(stand.at_rest) }
 }
 
 /// The verdict on the step, which is the whole truth only if all forces were looked at.

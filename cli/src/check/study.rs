@@ -79,7 +79,7 @@ pub(crate) struct Stand {
     pub(crate) chooses_steps: bool,
     /// The largest step stable for springs that are where they start, and at rest there.
     pub(crate) at_rest: Limit,
-    /// True if that is an estimate, since there are too many oscillations to work out all.
+    /// True if it may be less than that, as there are too many oscillations to work out all; it is no more but for a few per cent.
     pub(crate) estimated: bool,
     /// The largest step stable in every pose.
     pub(crate) every_pose: Limit,
@@ -147,11 +147,13 @@ impl Study {
 fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], h: f64) -> Stand {
     let at_rest = spectra.iter().fold(Limit::Unconditional, |least, modes| least.and(modes.largest_step(method)));
     let (every_pose, drag) = (bounds.poses_step(method), bounds.drag_step(method));
+    let is_estimate = spectra.iter().any(|spectrum| spectrum.is_estimate(method));
     Stand {
         method: method.to_string(),
         chooses_steps: method.chooses_steps(),
         at_rest,
-        estimated: spectra.iter().any(|spectrum| spectrum.is_estimate(method)),
+        // What no step or any is good for stays so, however many oscillations there are.
+        estimated: is_estimate && matches!(at_rest, Limit::Step(_)),
         every_pose,
         drag,
         contact: bounds.contact_step(method),

@@ -98,6 +98,22 @@ fn what_is_no_spring_is_told_as_well() {
 }
 
 #[test]
+fn many_oscillations_are_bounded_from_above() {
+    let particle = |i: u32| format!("particle {} 0 {} 0 0 0 1 {} 0 0 0 -1\n", i % 15, i / 15, u32::from(i == 0));
+    let row = (0..224).filter(|i| i % 15 != 14).map(|i| [i, i + 1]).chain((0..210).map(|i| [i, i + 15]));
+    let spring =
+        |[a, b]: [u32; 2]| format!("particle_spring {a} {b} 1 {} {}\n", 50 + a % 7, f64::from(b % 5) * 0.2 + 0.1);
+    let scene: String = (0..225).map(particle).chain(row.map(spring)).collect();
+    let folder = Folder::with("a.scn", scene);
+    let text = folder.run("check a.scn").fine().stdout;
+    for (name, words) in [("euler", "at most"), ("rk4*", "at most"), ("symplectic", ""), ("implicit", "any")] {
+        let line = text.lines().find(|line| line.trim_start().starts_with(name)).expect("a row");
+        let rest = line.trim_start().strip_prefix(name).unwrap_or_default().trim_start();
+        assert!(rest.starts_with(words) && rest.contains("at most") == (words == "at most"), "{text}");
+    }
+}
+
+#[test]
 fn constraints_are_told_and_bound_sub_steps() {
     // Twenty rigid links of a tenth of a metre hang straight down: the first is too long by 19 g h².
     let particle = |i: u32| format!(r#"{{"position": [0, {}, 0], "fixed": {}}}"#, -0.1 * f64::from(i), i == 0);

@@ -4,6 +4,7 @@ mod hold;
 
 use super::bounds::Bounds;
 use super::modes::{How, Spectrum};
+use super::net::Net;
 use pointmass::scene::{Model, SceneFile};
 use pointmass::stability::{Limit, Mode};
 use pointmass::{Drag, ForceKind, Heap, Method, Particle, Spring, System, Time, Vec3};
@@ -241,6 +242,33 @@ fn what_is_too_large_is_taken_at_its_extreme() {
     ] {
         let Limit::Step(step) = spectrum.largest_step(method) else { panic!("{method}") };
         assert!((step / known - 1.0).abs() < 2e-3, "{method}: {step}, not {known}");
+    }
+}
+
+#[test]
+fn what_a_single_direction_allows_is_no_less_than_what_all_do() {
+    let mut noise = 0.4f32;
+    let mut between = |low: f32, high: f32| {
+        noise = (noise * 997.0 + 0.618).fract();
+        low * (high / low).powf(noise)
+    };
+    for n in 5..11 {
+        let particle = |_| {
+            let position = Vec3::new(between(1.0, 3.0), between(1.0, 3.0), between(1.0, 3.0));
+            Particle { position, mass: between(0.1, 3.0), drag: between(0.01, 3.0), ..Particle::REST }
+        };
+        let particles: Vec<_> = (0..n).map(particle).collect();
+        let ends = (0..3 * n).map(|i| [(i % n) as u32, ((7 * i + i / n + 1) % n) as u32]).filter(|[a, b]| a != b);
+        let spring = |ends| Spring { kd: between(0.1, 20.0), ..Spring::new(ends, 1.0, between(10.0, 300.0)) };
+        let springs: Vec<_> = ends.map(spring).collect();
+        let (spectrum, net) = (Spectrum::of(&particles, &springs).expect("springs"), Net::of(&particles, &springs));
+        assert_eq!(spectrum.how, How::Coupled);
+        for method in [Method::Euler, Method::Symplectic, Method::Midpoint, Method::Rk4] {
+            let both = [spectrum.largest_step(method), net.critical_step(method)];
+            let [Limit::Step(all), Limit::Step(one)] = both else { panic!("{method}: {both:?}") };
+            // A direction is no mode, so that it may be a little less.
+            assert!(one > 0.97 * all, "{n} {method}: {one} for {all}");
+        }
     }
 }
 
