@@ -209,15 +209,14 @@ fn world(check: &Study) -> Vec<String> {
             0 => String::new(),
             n => format!(", and no faster near {}", counted(n, "other")),
         };
-        advice.push(match sink.rate.is_finite() {
-            true => format!(
+        advice.push(sink.without_bound().unwrap_or_else(|| {
+            format!(
                 "near {}, the pull changes within {}{others}: take --dt {} or less",
                 sink.place,
                 time(1.0 / sink.rate),
                 check.typed(std::f64::consts::TAU / (PULL * sink.rate))
-            ),
-            false => format!("{} pulls without bound at its surface: give it a ca above zero", sink.place),
-        });
+            )
+        }));
     }
     advice
 }

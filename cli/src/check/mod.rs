@@ -2,7 +2,7 @@
 //!
 //! `body` is whoever there may be, with the extremes of its `life` and what brakes it at the `onset`. `net` makes matrices of the springs, `modes` and `verlet`
 //! work out their oscillations at rest, `bounds` what holds in every pose, `contact` and `hit` what touching balls ask for,
-//! `goal` what goals do, `statics` how hard links are pulled, `fall` how hard sheets hit, `hold` what constraints do, `world` what else has a time of its own;
+//! `goal` what goals do, `statics` how hard links are pulled, `fall` how hard sheets hit, `hold` what constraints do, `pull` what sinks do, `world` what else has a time of its own;
 //! `study` is what it came to, which `advice` puts into words, and `report` and `plot` tell.
 
 mod advice;
@@ -19,6 +19,7 @@ mod net;
 mod onset;
 mod part;
 mod plot;
+mod pull;
 mod report;
 mod statics;
 mod study;

@@ -171,10 +171,7 @@ fn facts(study: &Study) -> Vec<(&'static str, String)> {
         let ([a, b], distance, period) = (pair.particles, plain(pair.distance), time(pair.period));
         ("orbits", format!("particles {a} and {b}, {distance} m apart, could circle each other in {period}"))
     }));
-    facts.extend(study.sinks.iter().map(|sink| {
-        let (gradient, mass, within) = (plain(sink.gradient), plain(sink.mass), time(1.0 / sink.rate));
-        ("sink", format!("{}: its pull changes by {gradient} N/m; {mass} kg mixed that within {within}", sink.place))
-    }));
+    facts.extend(study.sinks.iter().map(|sink| ("sink", format!("{}: {}", sink.place, sink.told()))));
     facts
 }
 

@@ -6,8 +6,9 @@ use super::contact::Contact;
 use super::hold::Hold;
 use super::modes::{How, Spectrum};
 use super::part::Part;
+use super::pull::Pull;
 use super::words::typed;
-use super::world::{Followed, Pair, Pull, fastest_pair, followed, judged_at_start, not_judged, pulls};
+use super::world::{Followed, Pair, fastest_pair, followed, judged_at_start, not_judged};
 use pointmass::Method;
 use pointmass::scene::{Model, Run};
 use pointmass::stability::Limit;
@@ -125,7 +126,7 @@ impl Study {
             followed: followed(model),
             // An orbit that takes far longer than the run is none.
             pair: fastest_pair(model, &bounds.bodies).filter(|pair| pair.period < 10.0 * run.duration),
-            sinks: pulls(model, &bounds.bodies),
+            sinks: Pull::all(model, &bounds.bodies),
             not_judged: not_judged(model),
             judged_at_start: judged_at_start(model),
             advice: Vec::new(),

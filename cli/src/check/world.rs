@@ -1,11 +1,11 @@
-//! Processes other than springs and drag that have a time of their own: collisions, orbits, the pull of sinks.
+//! Processes other than springs and drag that have a time of their own: collisions and orbits.
 
 use super::body::Body;
 use super::net::wide;
 use crate::stall::gravity;
 use pointmass::scene::Model;
 use pointmass::stability::longest_followed_step;
-use pointmass::{Force, ForceKind, Sink};
+use pointmass::{Force, ForceKind};
 use serde::Serialize;
 
 /// Particles that are looked at for the quickest pair, and for who is around whom.
@@ -33,19 +33,6 @@ pub(crate) struct Pair {
     pub(crate) rate: f64,
     /// The time of an orbit \[s\].
     pub(crate) period: f64,
-}
-
-/// A sink whose pull changes from place to place.
-#[derive(Debug, Serialize)]
-pub(crate) struct Pull {
-    /// Its place in the file.
-    pub(crate) place: String,
-    /// The steepest change of its pull with distance \[N/m\].
-    pub(crate) gradient: f64,
-    /// The lightest mass that it may pull \[kg\].
-    pub(crate) mass: f64,
-    /// √(gradient / mass) \[1/s\].
-    pub(crate) rate: f64,
 }
 
 /// Forces that may be as stiff as springs, depending on how near particles come or how fast they are.
@@ -109,24 +96,4 @@ pub(crate) fn fastest_pair(model: &Model, bodies: &[Body]) -> Option<Pair> {
         }
     }
     fastest
-}
-
-pub(crate) fn pulls(model: &Model, bodies: &[Body]) -> Vec<Pull> {
-    let mass = bodies.iter().filter(|body| body.is_free()).map(|body| body.mass[0]).fold(f64::INFINITY, f64::min);
-    let pull = |(i, sink): (usize, &Sink<_>)| {
-        let gradient = steepest(sink);
-        let rate = (gradient / mass).sqrt();
-        (rate > 0.0).then(|| Pull { place: format!("sinks[{i}]"), gradient, mass, rate })
-    };
-    model.forces.1.iter().enumerate().filter_map(pull).collect()
-}
-
-/// The largest |df/dd| of f = I / (c + b d + a d²), d ≥ 0: at the surface or where the second derivative is zero, at
-/// 6 a d = √(12 a c − 3 b²) − 3 b. Infinite where f is.
-fn steepest<M>(sink: &Sink<M>) -> f64 {
-    let [intensity, c, b, a] = [sink.intensity, sink.ca, sink.la, sink.qa].map(|x| f64::from(x).abs());
-    let slope = |d: f64| intensity * (b + 2.0 * a * d) / (c + (b + a * d) * d).powi(2);
-    let bend = ((12.0 * a * c - 3.0 * b * b).max(0.0).sqrt() - 3.0 * b) / (6.0 * a);
-    let steepest = slope(0.0).max(if bend > 0.0 { slope(bend) } else { 0.0 });
-    if steepest.is_nan() { f64::INFINITY } else { steepest }
 }

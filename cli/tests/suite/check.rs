@@ -114,6 +114,44 @@ fn many_oscillations_are_bounded_from_above() {
 }
 
 #[test]
+fn sinks_are_as_steep_as_their_law_says() {
+    let folder = Folder::new();
+    let scene = |law: &str| {
+        format!(
+            r#"{{"particles": [{{"position": [1, 0, 0], "mass": 0.5}}],
+            "sinks": [{{"intensity": 10, {law}, "shape": {{"sphere": {{"center": [0, 0, 0], "radius": 0.001}}}}}}]}}"#
+        )
+    };
+    for (law, gradient) in [
+        // I / s³ and I / (s (ca + s²)).
+        (r#""ca": 0, "la": 0, "qa": 1, "softening": 0.01"#, 1e7),
+        (r#""ca": 1, "la": 0, "qa": 1, "softening": 0.01"#, 1e3 / 1.0001),
+        // I √27 / 8 where D² is a third.
+        (r#""ca": 1, "la": 0, "qa": 1"#, 10.0 * 27f64.sqrt() / 8.0),
+        (r#""ca": 2, "la": 3, "qa": 0"#, 7.5),
+    ] {
+        folder.write("a.json", scene(law));
+        let report = check(&folder, "a.json");
+        assert!((number(&report, "sinks/0/gradient") / gradient - 1.0).abs() < 1e-6, "{law}: {report}");
+        assert!((number(&report, "sinks/0/rate") / (2.0 * gradient).sqrt() - 1.0).abs() < 1e-6, "{law}: {report}");
+    }
+    for (law, words) in [
+        (r#""ca": 0, "la": 0, "qa": 1"#, ["has no bound at its surface", "give it a softening, or a ca above zero"]),
+        (r#""ca": 0, "la": 2, "qa": 0"#, ["has no bound at its surface", "give it a softening, or a ca above zero"]),
+        (r#""ca": 1, "la": -2, "qa": 0"#, ["has no bound 0.5 m from its surface", "ca + la D + qa D² is zero"]),
+    ] {
+        folder.write("a.json", scene(law));
+        let text = folder.run("check a.json").stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.iter().all(|word| text.contains(word)), "{law}: {text}");
+    }
+    // What pulls everywhere alike does not change, and what divides by nothing but zeros pulls nobody.
+    for law in [r#""ca": 1, "la": 0, "qa": 0"#, r#""ca": 0, "la": 0, "qa": 0"#] {
+        folder.write("a.json", scene(law));
+        assert!(!folder.run("check a.json").stdout.contains("sink"), "{law}");
+    }
+}
+
+#[test]
 fn constraints_are_told_and_bound_sub_steps() {
     // Twenty rigid links of a tenth of a metre hang straight down: the first is too long by 19 g h².
     let particle = |i: u32| format!(r#"{{"position": [0, {}, 0], "fixed": {}}}"#, -0.1 * f64::from(i), i == 0);
