@@ -3,7 +3,7 @@
 //! `body` is whoever there may be, with the extremes of its `life` and what brakes it at the `onset`. `net` makes matrices of the springs, `modes` and `verlet`
 //! work out their oscillations at rest, `bounds` what holds in every pose, `contact` and `hit` what touching balls ask for,
 //! `goal` what goals do, `statics` how hard links are pulled, `fall` how hard sheets hit, `hold` what constraints do, `pull` what sinks do, `world` what else has a time of its own;
-//! `study` is what it came to, which `advice` puts into words, and `report` and `plot` tell.
+//! `study` is what it came to, with a `verdict` on each method, which `advice` puts into words, and `report` and `plot` tell.
 
 mod advice;
 mod body;
@@ -25,6 +25,7 @@ mod statics;
 mod study;
 #[cfg(test)]
 mod tests;
+mod verdict;
 mod verlet;
 mod words;
 mod world;

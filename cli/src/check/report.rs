@@ -3,6 +3,7 @@
 use super::hold::Hold;
 use super::modes::How;
 use super::study::{Oscillations, Stand, Study};
+use super::verdict::Verdict;
 use super::words::{limit, plain, time};
 use crate::outcome::Outcome;
 use crate::report::Report;
@@ -82,8 +83,7 @@ fn steps(study: &Study) -> Table {
     if study.led.is_some() {
         table.column("goal", stands().map(|stand| limit(stand.goal)));
     }
-    let is_whole = study.not_judged.is_empty();
-    table.words(format!("at {}", time(study.h())), stands().map(|stand| verdict(stand, is_whole)));
+    table.words(format!("at {}", time(study.h())), stands().map(verdict));
     table
 }
 
@@ -123,6 +123,7 @@ pub(crate) fn sheet(study: &Study) -> Table {
     table.column("dt_s", stands().map(|_| study.dt));
     table.column("stable", stands().map(|stand| stand.stable));
     table.column("growth_across_per_s", stands().map(|stand| stand.growth_across));
+    table.column("verdict", stands().map(|stand| stand.verdict.name()));
     table
 }
 
@@ -194,15 +195,13 @@ fn at_rest(stand: &Stand) -> String {
 }
 
 /// The verdict on the step, which is the whole truth only if all forces were looked at.
-fn verdict(stand: &Stand, is_whole: bool) -> String {
-    let grows = stand.growth_across > 0.0;
+fn verdict(stand: &Stand) -> String {
     let across = || format!("up to e-fold in {}", time(1.0 / stand.growth_across));
-    match stand.every_pose {
-        _ if stand.chooses_steps => "chooses its own steps".into(),
-        Limit::Never if grows => format!("grows, {}", across()),
-        _ if !stand.stable => "unstable".into(),
-        _ if grows => format!("stable; taut springs grow, {}", across()),
-        _ if !is_whole => "not known".into(),
-        _ => "stable".into(),
+    match stand.verdict {
+        Verdict::Grows => format!("grows, {}", across()),
+        Verdict::Stable | Verdict::NotKnown if stand.growth_across > 0.0 => {
+            format!("stable; taut springs grow, {}", across())
+        }
+        verdict => verdict.name().replace('_', " "),
     }
 }

@@ -7,6 +7,7 @@ use super::hold::Hold;
 use super::modes::{How, Spectrum};
 use super::part::Part;
 use super::pull::Pull;
+use super::verdict::Verdict;
 use super::words::typed;
 use super::world::{Followed, Pair, fastest_pair, followed, judged_at_start, not_judged};
 use pointmass::Method;
@@ -90,8 +91,10 @@ pub(crate) struct Stand {
     pub(crate) contact: Limit,
     /// The largest step that is stable for whoever goals hold, in every pose.
     pub(crate) goal: Limit,
-    /// True if it stands the step that is judged, as far as forces are looked at.
+    /// True if it stands the step that is judged, in every pose and as far as forces are looked at.
     pub(crate) stable: bool,
+    /// How it stands that step.
+    pub(crate) verdict: Verdict,
     /// The rate at which an oscillation across taut springs may grow at that step.
     pub(crate) growth_across: f64,
 }
@@ -104,7 +107,9 @@ impl Study {
         let born = bounds.birth_warning(h);
         let corners = extremes(&bounds.bodies[..model.particles.len()]);
         let spectra: Vec<_> = corners.iter().filter_map(|corner| Spectrum::of(corner, &model.springs)).collect();
-        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, h)).collect();
+        let not_judged = not_judged(model);
+        let is_whole = not_judged.is_empty();
+        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, (h, is_whole))).collect();
         let study = Self {
             scene: crate::load::name(path).into_owned(),
             dt,
@@ -127,7 +132,7 @@ impl Study {
             // An orbit that takes far longer than the run is none.
             pair: fastest_pair(model, &bounds.bodies).filter(|pair| pair.period < 10.0 * run.duration),
             sinks: Pull::all(model, &bounds.bodies),
-            not_judged: not_judged(model),
+            not_judged,
             judged_at_start: judged_at_start(model),
             advice: Vec::new(),
         };
@@ -145,11 +150,11 @@ impl Study {
     }
 }
 
-fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], h: f64) -> Stand {
+fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], (h, is_whole): (f64, bool)) -> Stand {
     let at_rest = spectra.iter().fold(Limit::Unconditional, |least, modes| least.and(modes.largest_step(method)));
     let (every_pose, drag) = (bounds.poses_step(method), bounds.drag_step(method));
     let is_estimate = spectra.iter().any(|spectrum| spectrum.is_estimate(method));
-    Stand {
+    let mut stand = Stand {
         method: method.to_string(),
         chooses_steps: method.chooses_steps(),
         at_rest,
@@ -160,8 +165,11 @@ fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], h: f64) -> Stand
         contact: bounds.contact_step(method),
         goal: bounds.goal_step(method),
         stable: method.chooses_steps() || bounds.largest_step(method).admits(h),
+        verdict: Verdict::Stable,
         growth_across: bounds.growth(method, h),
-    }
+    };
+    stand.verdict = Verdict::on(&stand, h, is_whole);
+    stand
 }
 
 fn oscillations(spectrum: &Spectrum) -> Oscillations {

@@ -98,22 +98,6 @@ fn what_is_no_spring_is_told_as_well() {
 }
 
 #[test]
-fn many_oscillations_are_bounded_from_above() {
-    let particle = |i: u32| format!("particle {} 0 {} 0 0 0 1 {} 0 0 0 -1\n", i % 15, i / 15, u32::from(i == 0));
-    let row = (0..224).filter(|i| i % 15 != 14).map(|i| [i, i + 1]).chain((0..210).map(|i| [i, i + 15]));
-    let spring =
-        |[a, b]: [u32; 2]| format!("particle_spring {a} {b} 1 {} {}\n", 50 + a % 7, f64::from(b % 5) * 0.2 + 0.1);
-    let scene: String = (0..225).map(particle).chain(row.map(spring)).collect();
-    let folder = Folder::with("a.scn", scene);
-    let text = folder.run("check a.scn").fine().stdout;
-    for (name, words) in [("euler", "at most"), ("rk4*", "at most"), ("symplectic", ""), ("implicit", "any")] {
-        let line = text.lines().find(|line| line.trim_start().starts_with(name)).expect("a row");
-        let rest = line.trim_start().strip_prefix(name).unwrap_or_default().trim_start();
-        assert!(rest.starts_with(words) && rest.contains("at most") == (words == "at most"), "{text}");
-    }
-}
-
-#[test]
 fn sinks_are_as_steep_as_their_law_says() {
     let folder = Folder::new();
     let scene = |law: &str| {
@@ -148,6 +132,44 @@ fn sinks_are_as_steep_as_their_law_says() {
     for law in [r#""ca": 1, "la": 0, "qa": 0"#, r#""ca": 0, "la": 0, "qa": 0"#] {
         folder.write("a.json", scene(law));
         assert!(!folder.run("check a.json").stdout.contains("sink"), "{law}");
+    }
+}
+
+#[test]
+fn what_only_other_poses_do_not_stand_is_told_so() {
+    let folder = Folder::new();
+    if course::copy_into(&folder, ".").is_none() {
+        return;
+    }
+    let args = "tetra.scn --dt 1/60 --integrator symplectic";
+    let report = check(&folder, args);
+    let verdict = |name: &str| {
+        let one = report["methods"].as_array().into_iter().flatten().find(|one| one["method"] == name);
+        one.map(|one| (one["stable"].clone(), one["verdict"].clone())).expect("the method")
+    };
+    assert_eq!(verdict("symplectic"), (json!(false), json!("not_in_every_pose")));
+    assert_eq!(verdict("rk4"), (json!(true), json!("stable")));
+    assert_eq!(verdict("adaptive"), (json!(true), json!("chooses_its_own_steps")));
+    let text = folder.run(&format!("check {args} --out a.csv")).fine().stdout;
+    assert!(text.contains("any  not in every pose\n") && text.contains("are not stable in every pose"), "{text}");
+    assert!(folder.read("a.csv").contains(",not_in_every_pose\n"), "{}", folder.read("a.csv"));
+    let text = folder.run("check tetra.scn --dt 1/30 --integrator symplectic").fine().stdout;
+    assert!(text.contains("any  unstable\n") && text.contains("explode"), "{text}");
+}
+
+#[test]
+fn many_oscillations_are_bounded_from_above() {
+    let particle = |i: u32| format!("particle {} 0 {} 0 0 0 1 {} 0 0 0 -1\n", i % 15, i / 15, u32::from(i == 0));
+    let row = (0..224).filter(|i| i % 15 != 14).map(|i| [i, i + 1]).chain((0..210).map(|i| [i, i + 15]));
+    let spring =
+        |[a, b]: [u32; 2]| format!("particle_spring {a} {b} 1 {} {}\n", 50 + a % 7, f64::from(b % 5) * 0.2 + 0.1);
+    let scene: String = (0..225).map(particle).chain(row.map(spring)).collect();
+    let folder = Folder::with("a.scn", scene);
+    let text = folder.run("check a.scn").fine().stdout;
+    for (name, words) in [("euler", "at most"), ("rk4*", "at most"), ("symplectic", ""), ("implicit", "any")] {
+        let line = text.lines().find(|line| line.trim_start().starts_with(name)).expect("a row");
+        let rest = line.trim_start().strip_prefix(name).unwrap_or_default().trim_start();
+        assert!(rest.starts_with(words) && rest.contains("at most") == (words == "at most"), "{text}");
     }
 }
 
