@@ -131,7 +131,7 @@ fn hem(fixed: &[usize], kind: &str) -> Value {
     })
 }
 
-/// What is solved for apart and sewn together hangs still, as low as with many sub-steps, but for how far what hangs from a seam falls in one.
+/// What is solved for apart and sewn together hangs still, as low as with many sub-steps but for what seams open: some n² g h² where n rows hang below.
 #[test]
 fn sheets_hang_still_with_what_is_solved_for_apart() {
     for (name, parts) in [("curtains", curtains(&top())), ("rod", hem(&top(), "strand")), ("rope", hem(&top(), "rope"))] {
@@ -142,7 +142,7 @@ fn sheets_hang_still_with_what_is_solved_for_apart() {
                 let [low, fast] = hangs(&parts, substeps, &method);
                 let falls = (G / (60.0 * f64::from(substeps)).powi(2)) as f32;
                 let name = format!("{name}: {method} x{substeps}");
-                assert!((low - right).abs() < EDGE as f32 * falls + 0.004, "{name}: {low} for {right} m");
+                assert!((low - right).abs() < (EDGE * EDGE) as f32 * falls + 0.004, "{name}: {low} for {right} m");
                 assert!(fast < 0.1 + 60.0 * falls, "{name}: {fast} m/s");
             }
         }

@@ -48,6 +48,26 @@ fn ropes_stretch_by_their_closed_form_however_fine_they_are() {
     }
 }
 
+/// A rope's end that `ties` tie rigidly is one of its `ends`, to the last bit, and a soft one is not.
+#[test]
+fn ties_of_rope_ends_are_the_ropes_own() {
+    let scene = |ends: &str, ties: &str| {
+        let text = format!(
+            r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.80665, 0]}}}}], "ropes": [
+            {{"curve": [[0, 0, 0], [1, 0, 0]], "segments": 8, "fixed": [0]}},
+            {{"curve": [[1, 0, 0], [2, 0, 0]], "segments": 8{ends}}}]{ties}}}"#
+        );
+        after(&model(&text).unwrap(), 1.0, 4, Method::Symplectic)
+    };
+    let tied = |compliance: &str| {
+        let ties = format!(r#", "ties": [{{"of": {{"rope": 1}}, "points": [0], "to": {{"rope": 0}}{compliance}}}]"#);
+        scene("", &ties)
+    };
+    let own = scene(r#", "ends": [{"rope": 0}, null]"#, "");
+    assert_eq!(tied(""), own);
+    assert_ne!(tied(r#", "compliance": 1e-3"#), own);
+}
+
 /// What hangs from a rope however heavy does not stretch it, nor leave it, whichever way it is fixed on.
 #[test]
 fn a_rope_carries_what_it_is_tied_to() {

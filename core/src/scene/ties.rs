@@ -6,7 +6,7 @@ use alloc::format;
 use alloc::vec::Vec;
 
 /// Points of a body that are tied to the surface of another: buttons and patches on cloth, ropes on boxes, hair on skin. Each goes with the place at which it
-/// is to begin with.
+/// is to begin with. A rope's end that is tied rigidly is as one of the rope's `ends`.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

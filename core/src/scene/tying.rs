@@ -2,7 +2,7 @@
 
 use super::start::Start;
 use super::ties::{Body, BodyTie};
-use crate::constrain::{ConstraintKind, Tie};
+use crate::constrain::{ConstraintKind, Rope, Tie, TiedRope};
 use crate::draw::Lock;
 use crate::math::{clamp, dot, length};
 use crate::rays;
@@ -12,6 +12,9 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use glam::Vec3;
+
+/// A rope of a file, with what its ends are tied to.
+type FileRope = TiedRope<Vec<u32>, Vec<f32>, Vec<u32>, Vec<f32>>;
 
 /// How far a point may be off the line that it is tied to, a share of a segment of that.
 const OFF: f32 = 1e-3;
@@ -132,11 +135,38 @@ impl Start {
         Ok(Tie { particle, to: nearest, weights: None, offset: 0.0, compliance, damping })
     }
 
-    /// Ties a particle to a body at the place where it begins.
+    /// Ties a particle to a body at the place where it begins. A rope whose end it is solves for it with what it is tied to.
     pub(super) fn tie(&mut self, particle: u32, to: Body, give: [f32; 2]) -> Result<(), String> {
         let tie = self.tied(particle, to, give)?;
-        self.constraints.push(ConstraintKind::Tie(tie));
+        match if tie.compliance == 0.0 { self.free_end(particle) } else { None } {
+            Some((TiedRope { ends, .. }, end)) => ends[end] = Some(tie),
+            None => self.constraints.push(ConstraintKind::Tie(tie)),
+        }
         Ok(())
+    }
+
+    /// The rope of which a particle is an end that nothing holds, and which.
+    fn free_end(&mut self, particle: u32) -> Option<(&mut FileRope, usize)> {
+        if self.particles.get(particle as usize)?.fixed {
+            return None;
+        }
+        let of = |rope: &Rope<Vec<u32>, Vec<f32>>| {
+            [rope.particles.first(), rope.particles.last()].iter().position(|&end| end == Some(&particle))
+        };
+        for constraint in &mut self.constraints {
+            match constraint {
+                ConstraintKind::Rope(rope) if of(rope).is_some() => {
+                    *constraint = ConstraintKind::TiedRope(TiedRope { rope: rope.clone(), ends: [None, None] });
+                }
+                _ => {}
+            }
+            if let ConstraintKind::TiedRope(tied) = constraint
+                && let Some(end) = of(&tied.rope)
+            {
+                return tied.ends[end].is_none().then_some((tied, end));
+            }
+        }
+        None
     }
 
     /// Ties all points that are to be tied.

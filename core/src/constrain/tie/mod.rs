@@ -23,7 +23,7 @@ pub use rope::TiedRope;
 ///
 /// One iteration a sub-step, a few more where there is an offset, and as often as others move apart what one [bears](crate::constrain::Bodies::bear) of the other: a [`Shell`](super::Shell) is solved with what is
 /// tied to it rigidly, unless that is solved with others apart (another shell, strands, a rope); and rigid ties of a list are met again after each other. Elsewhere a tie that joins something light to what is n times as heavy, and is held by other constraints, is off by
-/// about n g h² under its load. List it behind what it ties.
+/// about n g h² under its load, and a seam of two that are solved apart opens by some n² g h² where n rows of particles hang below it. List it behind what it ties.
 ///
 /// While one of the particles is dead it does nothing, and neither does one with an offset from a triangle without area. In a
 /// [periodic room](crate::index::Periodic) it acts along the shortest way through the sides.
