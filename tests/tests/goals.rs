@@ -83,7 +83,11 @@ fn a_goal_acts_in_the_steps_of_its_time_alone() {
             assert!((before - G).length() < 1e-4, "{} at {fps}: {before} m/s before", method.name());
             let held = to(&mut system, 4);
             let after = to(&mut system, 5) - held;
-            assert!(held.length() < 1e-2 && (after - G).length() < 1e-3, "{} at {fps}: {held}, {after} m/s", method.name());
+            assert!(
+                held.length() < 1e-2 && (after - G).length() < 1e-3,
+                "{} at {fps}: {held}, {after} m/s",
+                method.name()
+            );
         }
     }
 }

@@ -122,7 +122,9 @@ fn curtains(fixed: &[usize]) -> Value {
 fn hem(fixed: &[usize], kind: &str) -> Value {
     let curve = json!([[-0.5, 0, 0], [0.5, 0, 0]]);
     let along = match kind {
-        "strand" => json!({"form": {"curve": curve}, "segments": EDGE - 1, "radius": 0.008, "young": 1e7, "density": 900, "damping": 0.01}),
+        "strand" => {
+            json!({"form": {"curve": curve}, "segments": EDGE - 1, "radius": 0.008, "young": 1e7, "density": 900, "damping": 0.01})
+        }
         _ => json!({"curve": curve, "segments": EDGE - 1, "diameter": 0.016, "density": 900}),
     };
     json!({
@@ -134,7 +136,8 @@ fn hem(fixed: &[usize], kind: &str) -> Value {
 /// What is solved for apart and sewn together hangs still, as low as with many sub-steps but for what seams open: some n² g h² where n rows hang below.
 #[test]
 fn sheets_hang_still_with_what_is_solved_for_apart() {
-    for (name, parts) in [("curtains", curtains(&top())), ("rod", hem(&top(), "strand")), ("rope", hem(&top(), "rope"))] {
+    for (name, parts) in [("curtains", curtains(&top())), ("rod", hem(&top(), "strand")), ("rope", hem(&top(), "rope"))]
+    {
         let [right, _] = hangs(&parts, 30, "verlet");
         for (round, substeps) in [1, 2, 6].into_iter().enumerate() {
             for method in methods(round) {

@@ -154,7 +154,8 @@ fn write(rows: Written<'_>) {
     let mut scratch = layout.shares(work).scratch;
     let ([tree, near], _, lasting) = scratch.moving();
     let (index, finding) = (StateIndex::new(index, near, lasting), Finding::default());
-    let mut finder = Finder { attributes, custom: seen, needs, tree, index, lists: None, first: 0, since: end, finding };
+    let mut finder =
+        Finder { attributes, custom: seen, needs, tree, index, lists: None, first: 0, since: end, finding };
     finder.with_state(end, position, velocity, &mut |state| write(state, &mut custom));
     effort.found(&finder.finding);
 }

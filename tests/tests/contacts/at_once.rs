@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use pointmass::shape::Plane;
 use pointmass::{Contacts, Gravity, Heap, Id, Impact, Method, Observer, Particle, Scene, System, Time, Vec3};
-use pointmass_tests::{f64s, is_run, started};
+use pointmass_tests::{f64s, is_run, run, started};
 
 const RADIUS: f32 = 0.1;
 const FLOOR: Plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
@@ -122,6 +122,44 @@ fn a_cradle_passes_on_what_comes() {
                         let off = (velocity[row[i]] - Vec3::X * want).length();
                         assert!(off < 1e-4 * speed, "{case}: ball {i} at {}", velocity[row[i]]);
                     }
+                }
+            }
+        }
+    }
+}
+
+/// A column at rest shows no speed, however much heavier what is above is, and twenty balls in one sub-step are pressed into each other by no more than a
+/// fifth of one.
+#[test]
+fn a_column_at_rest_shows_no_speed() {
+    let mut cases = 0;
+    for masses in [&[1.0, 100.0][..], &[1.0, 1.0, 8.0], &[8.0, 1.0, 1.0], &[1.0, 1.0, 1.0, 1.0, 20.0], &[1.0; 20]] {
+        for elasticity in [0.0, 0.5] {
+            for substeps in [1, 4, 12] {
+                for method in Method::ALL {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
+                    let start: Vec<_> = (0_u8..)
+                        .zip(masses)
+                        .map(|(i, &mass)| Particle {
+                            position: Vec3::Y * (RADIUS * (1.0 + 2.0 * f32::from(i))),
+                            mass,
+                            radius: RADIUS,
+                            elasticity,
+                            ..Particle::REST
+                        })
+                        .collect();
+                    let scene = over_a_floor(&start, method, substeps);
+                    let mut system = started(&scene, start.len(), 1);
+                    run(&mut system, &scene, 1.0 / 60.0, 360);
+                    let particles = system.particles();
+                    let fastest = particles.velocity.iter().map(|v| v.length()).fold(0.0, f32::max);
+                    let case = format!("{masses:?}, {elasticity}, {substeps}, {method}");
+                    assert!(fastest < 1e-3, "{case}: {fastest} m/s");
+                    let sunk =
+                        (start[masses.len() - 1].position.y - particles.position[masses.len() - 1].y) / (2.0 * RADIUS);
+                    assert!(masses.len() < 20 || sunk < 0.2, "{case}: pressed by {sunk} of a ball");
                 }
             }
         }

@@ -103,7 +103,10 @@ fn slow_balls_far_from_the_origin_never_pass_through_each_other() {
                 let p = system.particles();
                 let order = (p.position[1] - p.position[0]).dot(axis);
                 assert!(order > 0.25, "{far} m off, {speed} m/s, {rate}/s along {axis}: {order}");
-                assert!((p.velocity[1] - p.velocity[0]).dot(axis) > 0.0, "{far} m off, {speed} m/s, {rate}/s along {axis}");
+                assert!(
+                    (p.velocity[1] - p.velocity[0]).dot(axis) > 0.0,
+                    "{far} m off, {speed} m/s, {rate}/s along {axis}"
+                );
             }
         }
     }
