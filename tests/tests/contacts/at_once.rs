@@ -136,7 +136,7 @@ fn a_column_at_rest_shows_no_speed() {
     for masses in [&[1.0, 100.0][..], &[1.0, 1.0, 8.0], &[8.0, 1.0, 1.0], &[1.0, 1.0, 1.0, 1.0, 20.0], &[1.0; 20]] {
         for elasticity in [0.0, 0.5] {
             for substeps in [1, 4, 12] {
-                for method in Method::ALL {
+                for &method in Method::ALL {
                     if !is_run(&mut cases) {
                         continue;
                     }
