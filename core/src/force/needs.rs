@@ -98,8 +98,6 @@ pub(crate) struct Finder<'a> {
     /// Lists of neighbours, where there is memory for them.
     pub(crate) lists: Option<ListMemory<'a>>,
     pub(crate) first: usize,
-    /// When the part of a step began that forces are asked about.
-    pub(crate) since: Time,
     pub(crate) finding: Finding,
 }
 
@@ -107,7 +105,7 @@ impl Finder<'_> {
     /// Calls `then` with the state as forces see it, trees and index made.
     pub(crate) fn with_state(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3], then: Then<'_>) {
         self.finding.evaluations += u32::from(!position.is_empty());
-        let state = State { since: self.since, ..self.attributes.state(self.custom, time, [position, velocity]) };
+        let state = self.attributes.state(self.custom, time, [position, velocity]);
         match self.needs.mass_tree.or(self.needs.charge_tree) {
             Some(trees) if position.len() >= BarnesHut::FEWEST => (trees.0)(self, &state, then),
             _ => self.with_near(&state, then),
@@ -154,8 +152,7 @@ fn write(rows: Written<'_>) {
     let mut scratch = layout.shares(work).scratch;
     let ([tree, near], _, lasting) = scratch.moving();
     let (index, finding) = (StateIndex::new(index, near, lasting), Finding::default());
-    let mut finder =
-        Finder { attributes, custom: seen, needs, tree, index, lists: None, first: 0, since: end, finding };
+    let mut finder = Finder { attributes, custom: seen, needs, tree, index, lists: None, first: 0, finding };
     finder.with_state(end, position, velocity, &mut |state| write(state, &mut custom));
     effort.found(&finder.finding);
 }
@@ -167,9 +164,8 @@ fn tell(rows: Told<'_>) {
     let ([tree, near], memory, lasting) = scratch.moving();
     let (index, finding) = (StateIndex::new(index, near, lasting), Finding::default());
     // What forces fell back on to find neighbours has been counted when they moved everybody.
-    let since = rows.during[1];
-    let mut finder = Finder { attributes, custom, needs, tree, index, lists: None, first: 0, since, finding };
-    finder.with_state(since, position, velocity, &mut |now| {
+    let mut finder = Finder { attributes, custom, needs, tree, index, lists: None, first: 0, finding };
+    finder.with_state(rows.during[1], position, velocity, &mut |now| {
         let work_out = &mut |now: &State<'_>| {
             let total = &mut memory[..len];
             total.fill(Vec3::ZERO);

@@ -16,8 +16,8 @@ use glam::Vec3;
 pub struct State<'a> {
     /// The instant.
     pub time: Time,
-    /// The instant at which the part of a step began that a method looks for forces in; outside of one, `time`. What is switched on or off at an
-    /// instant, is so for parts that begin then or later, whatever instants a method asks for.
+    /// The instant at which the sub-step began that a method looks for forces in; outside of one, `time`. What is switched on or off at an instant is so
+    /// for sub-steps that begin then or later, at the very instant that is the end of one as well.
     pub since: Time,
     /// Positions \[m\].
     pub position: &'a [Vec3],
@@ -89,7 +89,9 @@ impl<'a> State<'a> {
     where
         'a: 's,
     {
-        self.moved_with(self.custom, time, [position, velocity])
+        let mut state = self.moved_with(self.custom, time, [position, velocity]);
+        state.since = time;
+        state
     }
 
     /// The same with other columns of a user's own.
@@ -106,7 +108,7 @@ impl<'a> State<'a> {
         let len = position.len();
         State {
             time,
-            since: time,
+            since: self.since,
             position,
             velocity,
             radius: &self.radius[..len],

@@ -46,7 +46,6 @@ impl Dynamics for Field<'_> {
     }
 
     fn reached(&mut self, time: Time, position: &[Vec3], velocity: &[Vec3]) {
-        self.finder.since = time;
         let state = self.finder.attributes.state(self.finder.custom, time, [position, velocity]);
         self.observer.after(Phase::Advance, &state);
     }

@@ -29,7 +29,7 @@ impl Tile<'_> {
         observer: &mut dyn Observer,
     ) {
         let [now, end] = substep.during;
-        (self.now, self.dt) = (now, end - now);
+        (self.now, self.dt, self.attributes.lives.since) = (now, end - now, now);
         if let Some(leap) = scene.leap().filter(|_| self.old == self.position.len()) {
             return self.leap(leap, report);
         }
@@ -42,7 +42,7 @@ impl Tile<'_> {
         if old < len {
             let (words, memory, lasting) = scratch.moving();
             let custom = attributes.custom(kept, layout.capacity());
-            let mut field = scene.field(attributes, custom, (old, now), (words, lasting), None, observer);
+            let mut field = scene.field(attributes, custom, old, (words, lasting), None, observer);
             let ends = [&mut *self.position, &mut *self.velocity];
             fly(&mut field, ends, old..len, attributes.lives.born, substep.during, memory);
             report.effort.found(&field.finder.finding);

@@ -22,20 +22,20 @@ pub(super) struct Carried<'a> {
 }
 
 impl Scene<'_> {
-    /// Its forces over the masses of rows from one on, in a part of a step since an instant, with memory for trees, an index and lists.
+    /// Its forces over the masses of rows from one on, with memory for trees, an index and lists.
     #[cfg_attr(one_by_one, inline(never))]
     pub(super) fn field<'f>(
         &'f self,
         attributes: &'f Attributes<'f>,
         custom: CustomColumns<'f>,
-        (first, since): (usize, Time),
+        first: usize,
         ([tree, near], lasting): ([&'f mut [u32]; 2], Lasting<'f>),
         lists: Option<ListMemory<'f>>,
         observer: &'f mut dyn Observer,
     ) -> Field<'f> {
         let (needs, finding) = (self.forces.needs(), Finding::default());
         let index = StateIndex::new(self.index, near, lasting);
-        let finder = Finder { attributes, custom, needs, tree, index, lists, first, since, finding };
+        let finder = Finder { attributes, custom, needs, tree, index, lists, first, finding };
         let springs = self.springs.code().map(|code| code.force);
         let linearising = self.integrator.linearising();
         Field { forces: self.forces, springs, steady: self.steady(), finder, observer, linearising }
@@ -65,7 +65,7 @@ impl Moved<'_> {
         let (words, memory, lasting) = self.scratch.moving();
         let custom = self.attributes.custom(self.kept, stride);
         let lists = Some(self.lists.again());
-        let mut field = scene.field(self.attributes, custom, (0, from), (words, lasting), lists, self.observer);
+        let mut field = scene.field(self.attributes, custom, 0, (words, lasting), lists, self.observer);
         let motion = Motion {
             position: self.position,
             velocity: self.velocity,
