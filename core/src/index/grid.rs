@@ -163,7 +163,8 @@ impl Partition for Grid<'_> {
 
     #[inline(always)]
     fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32)) {
-        for cell in self.starts[..self.layout.count() + 1].windows(2) {
+        let starts = self.starts.get(..=self.layout.count()).unwrap_or_default();
+        for cell in starts.windows(2) {
             if cell[0] < cell[1] {
                 visit(cell[0] as usize..cell[1] as usize, 0);
             }

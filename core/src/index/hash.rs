@@ -117,7 +117,8 @@ impl Partition for Hash<'_> {
 
     /// Buckets, or what of them is of one cell: others can be anywhere.
     fn groups(&self, visit: &mut impl FnMut(Range<usize>, u32)) {
-        for bucket in self.starts[..self.buckets.len + 1].windows(2) {
+        let starts = self.starts.get(..=self.buckets.len).unwrap_or_default();
+        for bucket in starts.windows(2) {
             let mut slots = bucket[0] as usize..bucket[1] as usize;
             if slots.is_empty() {
                 continue;

@@ -14,6 +14,7 @@ fn an_index_that_was_not_built_is_empty() {
         let mut memory = used(structure.words(10));
         let mut index = structure.index(&mut memory);
         compare(&index, &oracle, &[0.0, 1.0, INF], &centers(&points, 0), &structure);
+        index.parts(&mut |places| assert!(places.is_empty(), "{structure}: {places:?}"));
         index.refit(&points).expect("the memory is made for so many");
         compare(&index, &Oracle::new(&points), &[0.3], &centers(&points, 0), &structure);
     }
@@ -51,6 +52,7 @@ fn memory_is_enough_or_said_to_be_too_small() {
                         assert_eq!(index.build(&points[..room], reach), Ok(()), "{what}: {room} points");
                         assert_eq!(index.refit(&points), Err(TooSmall { points: wanted, room }), "{what}");
                         none.iter().for_each(|expected| expected.compare(&index, &what));
+                        index.parts(&mut |places| assert!(places.is_empty(), "{what}: {places:?}"));
                     }
                 }
             }
