@@ -124,7 +124,7 @@ pub struct Caps {
     /// A path was so curved that its collisions were sought along fewer chords than its accuracy asks. Only paths that are followed count:
     /// at coordinates from about 1e17 m on rounding decides which are, and not in the same way for one thing and for a list of it.
     pub chords: u64,
-    /// A spring lost an end.
+    /// A spring lost an end, or lacked one when its list was taken up.
     pub springs: u64,
     /// Two that were near each other, or a particle and a face, found no room in the list of contacts.
     pub contacts: u64,

@@ -128,6 +128,7 @@ impl<B: Storage> System<B> {
         let layout = workspace.layout(scene);
         if workspace.fits(scene, &layout) && workspace.lacks(scene).is_none() {
             workspace.status.kept = layout.kept_words();
+            report.caps.springs = workspace.take_up_springs(scene);
             let old = workspace.create(scene, &scene.backdrop(), &layout, dt, &mut report, observer);
             let mut memory = self.memory.slices();
             let mut workspace = Workspace::on(&mut memory, &mut self.status);

@@ -1,10 +1,10 @@
 //! Springs: closed forms, and what becomes of them when their ends die.
 
 use core::f64::consts::PI;
-use pointmass::force::Drive;
+use pointmass::force::{Drive, SpringList};
 use pointmass::{
-    ClothSprings, Drag, Emitter, Force, Gravity, Heap, Measures, Method, Particle, Scene, Sheet, Spring, SpringParams,
-    System, Time, Vec3, mesh_springs,
+    ClothSprings, Drag, Emitter, Force, Gravity, Heap, Measures, Method, Particle, Scene, Sheet, Size, Spring,
+    SpringParams, System, Time, Vec3, mesh_springs,
 };
 use pointmass_tests::{Random, f64s, gap, icosahedron, point, run, started};
 
@@ -485,4 +485,61 @@ fn a_sheet_beyond_all_numbers_is_refused() {
     let file = pointmass::scene::SceneFile::from_json("a.json", &text).expect("it is well-formed");
     let error = file.check().expect_err("it is too large").to_string();
     assert!(error.contains("cloths[0].form"), "{error}");
+}
+
+/// A system that goes on with other springs has those, as if it had begun with them.
+#[test]
+fn a_system_goes_on_with_other_springs() {
+    let start = [0.0, 1.0, 2.5].map(at);
+    let spring = |a, b| Spring::new([a, b], 0.5, 10.0);
+    let lists = [
+        vec![spring(0, 1), spring(1, 2)],
+        vec![spring(1, 2), spring(0, 1)],
+        vec![spring(1, 2)],
+        vec![spring(0, 2), spring(1, 2)],
+        vec![spring(2, 0), spring(1, 2)],
+        vec![spring(0, 1), spring(0, 1)],
+        vec![spring(0, 1), spring(2, 7)],
+        vec![],
+    ];
+    for first in &lists {
+        for then in lists.iter().filter(|then| !then.is_empty()) {
+            let scene = Scene { start: &start, springs: then, ..Scene::EMPTY };
+            let began = Scene { springs: first, ..scene };
+            let room = |scene: &Scene<'_>| {
+                let mut system = System::with(Heap::new(Size { springs: 2, ..scene.size() }));
+                system.start(scene, 0).expect("there is room");
+                system
+            };
+            let (mut system, mut fresh) = (room(&began), room(&scene));
+            let lost = u64::from(then[then.len() - 1].ends[1] == 7);
+            let is_other = first.iter().map(|spring| spring.ends).ne(then.iter().map(|spring| spring.ends));
+            let report = system.step(&scene, Time::frame(1, 60));
+            assert_eq!(report.caps.springs, if is_other { lost } else { 0 }, "{first:?}, {then:?}");
+            fresh.step(&scene, Time::frame(1, 60));
+            assert_eq!(system.particles().velocity, fresh.particles().velocity, "{first:?}, {then:?}");
+            let momentum = Measures::of(&system, &scene).momentum;
+            assert!(gap(momentum, [0.0; 3]) < 1e-6, "{first:?}, {then:?}: {momentum:?}");
+        }
+    }
+}
+
+/// What broke stays broken while only what springs are made of changes, or while a scene has none; in another list nothing is broken.
+#[test]
+fn springs_stay_broken_while_their_list_is_the_same() {
+    let start = [0.0, 2.0, 2.5].map(at);
+    let weak = [0, 1].map(|i| Spring { breaks_at: Some(1.5), ..Spring::new([i, i + 1], 1.0, 1.0) });
+    let scene = Scene { start: &start, springs: &weak, ..Scene::EMPTY };
+    let mut system = started(&scene, 3, 0);
+    assert_eq!(system.step(&scene, Time::frame(1, 60)).broken, 1);
+    let stiffer = weak.map(|spring| Spring { ks: 2.0, rest_length: 1.1, ..spring });
+    let none: [Spring; 0] = [];
+    for springs in [&stiffer as &dyn SpringList, &(), &none, &stiffer] {
+        system.step(&Scene { springs, ..scene }, Time::frame(1, 60));
+        assert!(system.state(&scene).springs.is_broken(0) && !system.state(&scene).springs.is_broken(1));
+    }
+    let other = [weak[1], Spring { breaks_at: Some(9.0), ..weak[0] }];
+    let other = Scene { springs: &other, ..scene };
+    assert_eq!(system.step(&other, Time::frame(1, 60)).broken, 0);
+    assert!([0, 1].iter().all(|&number| !system.state(&other).springs.is_broken(number)));
 }

@@ -13,7 +13,7 @@ use core::ops::Range;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Spring {
-    /// The particles it joins, by their place in the scene's start.
+    /// The particles it joins, by their place in the scene's start. Changed ends make another list of springs ([`Scene::springs`](crate::Scene::springs)).
     pub ends: [u32; 2],
     /// The length at which it neither pulls nor pushes \[m\].
     pub rest_length: f32,
@@ -186,6 +186,12 @@ impl<'a> Springs<'a> {
     /// The rows of both ends of every spring that holds.
     pub fn ends(&self) -> impl Iterator<Item = [usize; 2]> {
         self.held().map(|held| held.rows)
+    }
+
+    /// Counts the springs of which an end does not live.
+    pub(super) fn lacking(&self) -> u64 {
+        let lacks = |spring: &&Spring| spring.ends.iter().any(|&end| self.row(end).is_none());
+        self.springs.iter().filter(lacks).count() as u64
     }
 
     /// Counts the springs that hold the particle in `row`.

@@ -40,6 +40,8 @@ pub(crate) struct Status {
     pub(crate) taken: u32,
     /// Particles of the scene's start that found room.
     pub(crate) start: u32,
+    /// The name of the list of springs that are sorted by their ends; zero: none are.
+    pub(crate) springs: u32,
     /// Particles put in without an emitter so far, those that found no room included.
     pub(crate) given: u32,
     /// True if a scene has had reapers, so that keys decide what becomes of particles.
@@ -71,6 +73,7 @@ impl Status {
         free: 0,
         taken: 0,
         start: 0,
+        springs: 0,
         given: 0,
         is_reaped: false,
         is_indexed: false,

@@ -25,7 +25,9 @@ use crate::shape::Collider;
 pub struct Scene<'a> {
     /// The particles it begins with.
     pub start: &'a [Particle],
-    /// Springs between them.
+    /// Springs between them. A system may go on with others: where ends differ, or how many springs there are, they are taken up anew as the next
+    /// step begins, and none of them is broken, so that those that were ([`Springs::is_broken`](crate::force::Springs::is_broken)) have to be left
+    /// out; where only stiffness, lengths and the like differ, those that are broken stay so.
     pub springs: &'a dyn SpringList,
     /// Emitters, which bring further particles into the world.
     pub emitters: &'a dyn Emit,

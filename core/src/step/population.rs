@@ -37,10 +37,24 @@ impl Workspace<'_> {
         self.memory.last_spring.own().fill(0);
         // Entries beyond the lists count in the fingerprint: an earlier scene's broken springs must not.
         self.memory.incident.fill(0);
-        if let Some(code) = scene.springs.code() {
-            let (last, incident) = (self.memory.last_spring.own(), &mut *self.memory.incident);
-            self.status.totals.caps.springs = (code.sort)(scene.springs.list(), last, incident, self.status.start);
+        self.status.totals.caps.springs = self.take_up_springs(scene);
+    }
+
+    /// Sorts the scene's springs by their ends unless that has been done with a list of these ends, and counts those that lack one then. None
+    /// of them is broken then. A list without springs leaves what there is alone.
+    pub(crate) fn take_up_springs(&mut self, scene: &Scene<'_>) -> u64 {
+        let Some(code) = scene.springs.code() else { return 0 };
+        let list = scene.springs.list();
+        let name = (code.name)(list);
+        if name == 0 || name == self.status.springs {
+            return 0;
         }
+        self.status.springs = name;
+        let (last, incident) = (self.memory.last_spring.own(), &mut *self.memory.incident);
+        last.fill(0);
+        incident.fill(0);
+        (code.sort)(list, last, incident);
+        (code.lacking)(&self.memory.columns().springs(list, self.status))
     }
 
     /// Tells whether a step can be made in the memory that there is.
