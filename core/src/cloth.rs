@@ -57,10 +57,10 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// The number of the particle at a crossing: `along` the first side, `across` along the second.
+    /// The number of the particle at a crossing: `along` the first side, `across` along the second; beyond all numbers the largest there is.
     #[must_use]
     pub const fn number(&self, along: u32, across: u32) -> u32 {
-        across * (self.cells[0] + 1) + along
+        across.saturating_mul(self.cells[0].saturating_add(1)).saturating_add(along)
     }
 
     /// Where its particles are, by number.
@@ -77,7 +77,8 @@ impl Sheet {
         self.positions().map(move |position| Particle { position, ..like })
     }
 
-    /// Its springs, of which the particle with number 0 is `first` in the scene's start.
+    /// Its springs, of which the particle with number 0 is `first` in the scene's start. Ends beyond all numbers are the largest there is, where
+    /// nobody is.
     pub fn springs(&self, springs: &ClothSprings, first: u32) -> impl Iterator<Item = Spring> {
         let sheet = *self;
         let ClothSprings { structural, shear, bend } = *springs;
@@ -99,7 +100,7 @@ impl Sheet {
 
     fn spring(&self, from: [u32; 2], way: [i32; 2], params: SpringParams, first: u32) -> Option<Spring> {
         let [u, v] = [0, 1].map(|i| from[i].checked_add_signed(way[i]).filter(|&to| to <= self.cells[i]));
-        let ends = [self.number(from[0], from[1]), self.number(u?, v?)].map(|number| first + number);
+        let ends = [self.number(from[0], from[1]), self.number(u?, v?)].map(|number| first.saturating_add(number));
         let part = |i: usize| self.sides[i] * (way[i] as f32 / self.cells[i] as f32);
         // A side that is not gone along may have no cells.
         let step = (0..2).filter(|&i| way[i] != 0).map(part).fold(Vec3::ZERO, |sum, part| sum + part);
@@ -112,7 +113,8 @@ impl Sheet {
         let sheet = *self;
         let [width, height] = self.cells;
         // The corner and the number of the first triangle of a cell.
-        let cell = move |u: u32, v: u32| (sheet.number(u, v), 2 * (v * width + u));
+        let face = move |u: u32, v: u32| v.saturating_mul(width).saturating_add(u).saturating_mul(2).min(u32::MAX - 1);
+        let cell = move |u: u32, v: u32| (sheet.number(u, v), face(u, v));
         let corners = move |u: u32, v: u32| {
             [sheet.number(u, v), sheet.number(u + 1, v), sheet.number(u, v + 1), sheet.number(u + 1, v + 1)]
         };
@@ -192,7 +194,8 @@ pub fn mesh_hinges(triangles: &[[u32; 3]]) -> alloc::vec::Vec<Hinge> {
 }
 
 /// The springs of a triangle mesh, of which vertex 0 is particle `first` in the scene's start: one along every edge, and
-/// where two triangles share it one between their far corners. Triangles have no cells, so there are none across.
+/// where two triangles share it one between their far corners. Triangles have no cells, so there are none across. Ends beyond all numbers are
+/// the largest there is, where nobody is.
 #[cfg(feature = "alloc")]
 #[must_use]
 pub fn mesh_springs(
@@ -213,7 +216,8 @@ pub fn mesh_springs(
     }
     let spring = |[a, b]: [u32; 2], params: SpringParams| {
         let ends = vertices.get(a as usize).zip(vertices.get(b as usize))?;
-        Some(Spring::new([first + a, first + b], length(*ends.1 - *ends.0), params.ks).damped(params.kd))
+        let ends_of = [a, b].map(|end| first.saturating_add(end));
+        Some(Spring::new(ends_of, length(*ends.1 - *ends.0), params.ks).damped(params.kd))
     };
     let along =
         springs.structural.into_iter().flat_map(|params| edges.keys().filter_map(move |&edge| spring(edge, params)));

@@ -43,9 +43,7 @@ impl Time {
     #[must_use]
     pub const fn frame(n: u64, per_second: u32) -> Self {
         let rate = if per_second == 0 { 1 } else { per_second as u64 };
-        let number = ((n as u128) << 32) + rate as u128 / 2;
-        // A number of as much as `rate` times 2⁶⁴ has its quotient beyond the last instant.
-        Self(if number >> 64 >= rate as u128 { u64::MAX } else { divide(number, rate).0 })
+        Self::over(((n as u128) << 32) + rate as u128 / 2, rate)
     }
 
     /// From seconds, to the nearest tick; negative numbers and NaN give zero, numbers too large `NEVER`.
@@ -92,9 +90,15 @@ impl Time {
         if of == 0 {
             return Self::ZERO;
         }
-        let (part, of) = (part as u64, of as u64);
-        let (whole, rest) = divide(self.0 as u128, of);
-        Self(whole.wrapping_mul(part).wrapping_add(divide((rest * part) as u128, of).0))
+        // By halves, none of which is beyond 64 bits.
+        let (high, low) = ((self.0 >> 32) * part as u64, (self.0 & 0xFFFF_FFFF) * part as u64);
+        Self::over(((high as u128) << 32) + low as u128, of as u64)
+    }
+
+    /// So many ticks, divided; the last instant, if that is beyond it.
+    const fn over(ticks: u128, by: u64) -> Self {
+        // As much as `by` times 2⁶⁴ has its quotient beyond.
+        Self(if ticks >> 64 >= by as u128 { u64::MAX } else { divide(ticks, by).0 })
     }
 
     /// Half of it, rounded down to a tick.
@@ -174,5 +178,9 @@ mod tests {
     fn arithmetic_saturates() {
         assert_eq!(Time::NEVER + Time::SECOND, Time::NEVER);
         assert_eq!(Time::ZERO - Time::SECOND, Time::ZERO);
+        assert_eq!(Time::SECOND.part(7, 2), Time::from_seconds(3.5));
+        assert_eq!([Time::NEVER.part(2, 1), Time::NEVER.part(u32::MAX, 1)], [Time::NEVER; 2]);
+        assert_eq!([Time::NEVER.part(5, 5), Time::NEVER.part(2, 3)].map(Time::ticks), [u64::MAX, u64::MAX / 3 * 2]);
+        assert_eq!(Time::NEVER.part(u32::MAX, 0), Time::ZERO);
     }
 }

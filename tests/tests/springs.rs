@@ -543,3 +543,19 @@ fn springs_stay_broken_while_their_list_is_the_same() {
     assert_eq!(system.step(&other, Time::frame(1, 60)).broken, 0);
     assert!([0, 1].iter().all(|&number| !system.state(&other).springs.is_broken(number)));
 }
+
+#[test]
+fn numbers_of_sheets_and_meshes_stop_at_the_largest() {
+    let params = Some(SpringParams { ks: 1.0, kd: 0.0 });
+    let springs = ClothSprings { structural: params, shear: params, bend: params };
+    for cells in [[2, 3], [u32::MAX, 1], [1, u32::MAX], [65_536, 65_536], [u32::MAX; 2]] {
+        let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X, Vec3::Z], cells };
+        assert_eq!(sheet.number(u32::MAX, u32::MAX), u32::MAX);
+        let all = sheet.springs(&springs, u32::MAX - 1).take(9).flat_map(|spring| spring.ends).collect::<Vec<_>>();
+        assert!(all.len() == 18 && all.iter().all(|&end| end >= u32::MAX - 1), "{cells:?}: {all:?}");
+        assert!(sheet.triangles().take(9).count() > 0 && sheet.hinges().take(9).count() > 0, "{cells:?}");
+    }
+    let (vertices, triangles) = ([Vec3::ZERO, Vec3::X, Vec3::Y], [[0, 1, 2]]);
+    let ends = mesh_springs(&vertices, &triangles, &springs, u32::MAX - 1).iter().flat_map(|s| s.ends).max();
+    assert_eq!(ends, Some(u32::MAX));
+}

@@ -2,10 +2,11 @@
 
 use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::Burst;
+use pointmass::index::{IndexChoice, Room, SpatialIndex};
 use pointmass::shape::Sphere;
 use pointmass::{
-    Constraint, Emitter, Gravity, Heap, Inline, Likeness, Method, MutualGravity, Particle, Report, Scene, Size,
-    Storage, System, Time, Varied, Vec3,
+    Constraint, Custom, CustomList, Emitter, Gravity, Heap, Inline, Likeness, Meetings, Method, MutualGravity,
+    Particle, Penalty, Report, Scene, Size, Storage, System, Time, Varied, Vec3,
 };
 use pointmass_tests::busy::{SIZE, busy, emitters};
 use pointmass_tests::{config, started};
@@ -231,6 +232,62 @@ fn those_beyond_the_capacity_are_refused_and_counted() {
             (system.totals().initial, system.totals().refused),
             (capacity.min(10) as u64, 10 - capacity.min(10) as u64)
         );
+    }
+}
+
+/// As many columns as a number can count, which no memory has.
+struct Everything;
+
+impl CustomList for Everything {
+    fn count(&self) -> usize {
+        usize::MAX
+    }
+    fn get(&self, _: usize) -> Option<Custom<'_>> {
+        Some(Custom::new("all"))
+    }
+}
+
+impl IndexChoice for Everything {
+    fn columns(&self) -> usize {
+        usize::MAX
+    }
+    fn with_index(
+        &self,
+        _: &mut [u32],
+        _: &[Vec3],
+        _: f32,
+        _: Option<&Room>,
+        then: &mut dyn FnMut(Option<&dyn SpatialIndex>),
+    ) {
+        then(None);
+    }
+}
+
+impl Constraint for Everything {
+    fn demand(&self) -> Demand {
+        let all = Words { per_row: usize::MAX, fixed: usize::MAX };
+        Demand { kept: all, step: all, scratch: all, finds_near: true, ..Demand::NONE }
+    }
+    fn project(&self, _: &mut Bodies<'_>, _: &mut Share<'_>) {}
+}
+
+/// What no memory is enough for is refused, and a step of it is counted.
+#[test]
+fn demands_beyond_all_numbers_are_refused() {
+    let start = [Particle::REST; 3];
+    let scene = Scene { start: &start, ..Scene::EMPTY };
+    assert_eq!(scene.size_for(usize::MAX).particles, usize::MAX);
+    let balls = Scene { meetings: Meetings::IMPULSE, index: &Everything, ..scene };
+    let penalty = Penalty { stiffness: 1.0, damping: 0.0, friction: Default::default(), reach: 1.0 };
+    let touching = Scene { forces: &penalty, index: &Everything, ..scene };
+    let (custom, held) = (Scene { custom: &Everything, ..scene }, Scene { constraints: &Everything, ..scene });
+    for beyond in [custom, balls, touching, held, Scene { index: &Everything, custom: &Everything, ..held }] {
+        let mut system = started(&scene, 3, 0);
+        assert!(beyond.size().columns > 1_000_000 || beyond.size().kept > 1_000_000);
+        assert_eq!(system.step(&beyond, Time::SECOND).caps.insufficient_memory, 1);
+        assert_eq!(system.custom(&beyond).get("all").map_or(0, <[f32]>::len), 0);
+        assert_eq!(system.custom_mut(&beyond).get_mut("all").map_or(0, |values| values.len()), 0);
+        assert!(system.start(&beyond, 0).is_err());
     }
 }
 

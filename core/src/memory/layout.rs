@@ -131,7 +131,7 @@ impl Plan {
     /// By plain division: it is for who asks, and compilers leave that out where nobody reads the answer.
     pub(crate) fn columns(&self, capacity: usize) -> usize {
         let capacity = capacity.max(1);
-        self.words(capacity, self.lasting(capacity).div_ceil(3)).div_ceil(3 * capacity)
+        self.words(capacity, self.lasting(capacity).div_ceil(3)).div_ceil(capacity.saturating_mul(3))
     }
 
     /// Words for so many particles, what lasts through the step lying in so many vectors.
@@ -144,7 +144,7 @@ impl Plan {
 
     /// The words kept from step to step: columns of a user's own, what materials change, and what constraints keep.
     pub(crate) fn kept(&self) -> Words {
-        Words { per_row: self.custom + self.ageing, fixed: 0 }.and(self.constraints.kept)
+        Words { per_row: self.custom.saturating_add(self.ageing), fixed: 0 }.and(self.constraints.kept)
     }
 
     /// Words for each of so many particles that it takes.
@@ -362,16 +362,17 @@ impl Layout {
     pub(crate) fn kept<'m>(&self, words: &'m mut [u32]) -> (&'m mut [f32], Kept<'m>) {
         let Words { per_row, fixed } = self.plan.constraints.kept;
         let mut rest = words;
-        let custom = take(&mut rest, self.plan.custom * self.capacity);
+        // Steps are made where all of it fits. Where it does not, products may be anything: no more is taken than there is.
+        let custom = take(&mut rest, self.plan.custom.wrapping_mul(self.capacity));
         take(&mut rest, self.plan.ageing * self.capacity);
-        let rows = take(&mut rest, per_row * self.capacity);
+        let rows = take(&mut rest, per_row.wrapping_mul(self.capacity));
         (bytemuck::cast_slice_mut(custom), Kept { rows, fixed: take(&mut rest, fixed) })
     }
 
     /// Drags and masses of before materials have changed them.
     pub(crate) fn ageing<'m>(&self, words: &'m mut [u32]) -> [&'m mut [u32]; 2] {
         let mut rest = words;
-        take(&mut rest, self.plan.custom * self.capacity);
+        take(&mut rest, self.plan.custom.wrapping_mul(self.capacity));
         let words = take(&mut rest, self.plan.ageing * self.capacity);
         words.split_at_mut(words.len() / 2).into()
     }

@@ -103,7 +103,7 @@ impl Scene<'_> {
     /// With less memory they are looked up anew in each evaluation, to the same bits.
     #[must_use]
     pub fn columns_with_lists(&self) -> usize {
-        self.columns() + self.list_columns()
+        self.columns().saturating_add(self.list_columns())
     }
 
     /// The part of it for lists alone.
@@ -121,7 +121,7 @@ impl Scene<'_> {
     #[inline(always)]
     pub(crate) fn plan(&self) -> Plan {
         let needs = self.forces.needs();
-        let constrained = !self.constraints.is_empty();
+        let (constrained, index) = (!self.constraints.is_empty(), self.index.columns());
         Plan {
             custom: self.custom.count(),
             ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
@@ -129,12 +129,12 @@ impl Scene<'_> {
             constrained,
             constraints: self.constraints.demand().with_shared(),
             trees: needs.tree_columns(),
-            near: needs.columns(self.index) - needs.tree_columns(),
+            near: if needs.reach > 0.0 { index } else { 0 },
             // Newborns need one for their acceleration, whatever the method.
             method: self.integrator.columns().max(1),
-            index: self.index.columns(),
+            index,
             crowd: self.asks_around(),
-            meetings: self.meetings.columns() + if self.meetings.is_through() { 0 } else { self.index.columns() },
+            meetings: self.meetings.columns().saturating_add(if self.meetings.is_through() { 0 } else { index }),
         }
     }
 

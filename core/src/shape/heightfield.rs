@@ -157,15 +157,16 @@ impl<'a> HeightField<'a> {
     /// The place of a height \[m\], by its column and row.
     #[must_use]
     pub fn vertex(&self, column: usize, row: usize) -> Vec3 {
-        let height = self.heights.get(row * self.columns + column).copied().unwrap_or(0.0);
+        let height = self.heights.get(row.saturating_mul(self.columns).saturating_add(column)).copied().unwrap_or(0.0);
         self.origin + Vec3::new(column as f32 * self.spacing, height, row as f32 * self.spacing)
     }
 
     /// The two triangles of a cell, by the column and row of its first corner.
     #[must_use]
     pub fn triangles(&self, column: usize, row: usize) -> [Triangle; 2] {
-        let [a, b] = [self.vertex(column, row), self.vertex(column, row + 1)];
-        let [c, d] = [self.vertex(column + 1, row), self.vertex(column + 1, row + 1)];
+        let [right, below] = [column, row].map(|number| number.saturating_add(1));
+        let [a, b] = [self.vertex(column, row), self.vertex(column, below)];
+        let [c, d] = [self.vertex(right, row), self.vertex(right, below)];
         [Triangle { corners: [a, b, c] }, Triangle { corners: [c, b, d] }]
     }
 

@@ -140,3 +140,15 @@ fn bad_heights_are_refused() {
         assert_eq!(bad(2, &[0.0; 4], spacing), Some(BadHeights::Spacing));
     }
 }
+
+#[test]
+fn cells_beyond_a_field_are_level_at_zero() {
+    let heights = [0.5; 9];
+    let field = HeightField::new(Vec3::Y, 2.0, 3, &heights).expect("it is sound");
+    for far in [3, usize::MAX] {
+        let [column, row] = [far as f32 * 2.0; 2];
+        assert_eq!(field.vertex(far, far), Vec3::new(column, 1.0, row));
+        let corners = field.triangles(far, far).map(|triangle| triangle.corners);
+        assert!(corners.as_flattened().iter().all(|corner| corner.y == 1.0), "{corners:?}");
+    }
+}
