@@ -66,7 +66,7 @@ impl<'a> Neighbours<'a> {
         self.room
     }
 
-    /// Found by an index of these points, if there is one.
+    /// Found by an index of these points, if there is one. Points that it has beyond these are near nobody.
     #[must_use]
     pub fn by(index: Option<&'a dyn SpatialIndex>, points: &'a [Vec3]) -> Self {
         Self { points, source: index.map_or(Source::All, Source::Index), room: None }
@@ -232,7 +232,9 @@ impl<'a> Neighbours<'a> {
     }
 
     fn place(&self, row: usize) -> (usize, Vec3) {
-        (row, wrapped_in(self.room, self.points[row]))
+        // An index may have been made of more points; what is no number is near nobody.
+        let point = self.points.get(row).copied().unwrap_or(Vec3::NAN);
+        (row, wrapped_in(self.room, point))
     }
 
     fn entry(&self, row: u32) -> Entry {

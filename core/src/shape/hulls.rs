@@ -60,10 +60,10 @@ impl Hulls {
         Self { min, max, room: radius + 16.0 * f32::EPSILON * largest, largest }
     }
 
-    /// One of them.
+    /// One of them; what is missing is at the origin.
     #[must_use]
     pub fn get(&self, i: usize) -> Aabb {
-        let corner = |sides: &Sides| Vec3::new(sides[0][i], sides[1][i], sides[2][i]);
+        let corner = |sides: &Sides| Vec3::from_array(sides.map(|side| side.get(i).copied().unwrap_or(0.0)));
         Aabb { min: corner(&self.min) - self.room, max: corner(&self.max) + self.room }
     }
 
@@ -125,6 +125,16 @@ mod tests {
     use super::*;
     use crate::rng::Stream;
     use crate::shape::{Collider, Cuboid, Plane, Sphere};
+
+    #[test]
+    fn what_is_missing_is_at_the_origin() {
+        let hulls = Hulls::of_paths([&[Vec3::ONE; 2]; 4], &[0.5; 2], 0.0);
+        assert!(hulls.get(1).min.x > 0.49 && hulls.get(1).max.x > 1.49);
+        for missing in [2, Hulls::MANY - 1, Hulls::MANY, usize::MAX] {
+            let Aabb { min, max } = hulls.get(missing);
+            assert!(min == -max && max.x > 0.5 && max.x < 0.51, "{missing}");
+        }
+    }
 
     /// Whatever may touch by itself is marked among others, wherever it is and however many they are.
     #[test]

@@ -3,7 +3,7 @@
 use super::INF;
 use super::expected::{Expected, centers, compare};
 use pointmass::Vec3;
-use pointmass::index::{SpatialIndex, Structure, TooSmall};
+use pointmass::index::{Neighbours, SpatialIndex, Structure, TooSmall};
 use pointmass_tests::fields::used;
 use pointmass_tests::points::{Oracle, Spread};
 
@@ -59,6 +59,28 @@ fn memory_is_enough_or_said_to_be_too_small() {
         }
         // The next point takes a few words, not many.
         assert!(least >= sound / 2, "{structure}: room for {least} at the most");
+    }
+}
+
+/// Of points that an index has beyond those that are asked about nobody is near.
+#[test]
+fn an_index_of_more_points_finds_those_there_are() {
+    let points = Spread::Cube.points(200, 4);
+    for &structure in Structure::ALL {
+        let mut memory = used(structure.words(points.len()));
+        let mut index = structure.index(&mut memory);
+        index.build(&points, 0.5).expect("there is room");
+        for some in [0, 1, 7, 150, 200] {
+            let pairs = |near: Neighbours<'_>| {
+                let mut pairs = vec![];
+                near.of(0..usize::MAX, 0.5, &mut |row, others| pairs.extend(others.rows().iter().map(|&o| (row, o))));
+                pairs.sort_unstable();
+                pairs
+            };
+            let of_some = &points[..some];
+            let found = pairs(Neighbours::by(Some(&index), of_some));
+            assert_eq!(found, pairs(Neighbours::among(of_some)), "{structure} of {some}");
+        }
     }
 }
 
