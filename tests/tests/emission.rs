@@ -1,7 +1,7 @@
 //! Births: how many, and when, however time is cut into steps.
 
-use pointmass::emit::Burst;
-use pointmass::{Emitter, Gravity, Heap, Scene, Spread, System, Time, Varied, Vec3};
+use pointmass::emit::{Births, Burst};
+use pointmass::{Emit, Emitter, Gravity, Heap, Particle, Scene, Spread, System, Time, Varied, Vec3};
 use pointmass_tests::emitting::{Birth, cuts, living, play, sphere, varied};
 use pointmass_tests::{gap, started};
 
@@ -213,5 +213,67 @@ fn counting_what_finds_no_room_never_overflows() {
         // It may stand still at the largest number there is, but not start again.
         assert!(system.totals().refused >= before, "{} after {before}", system.totals().refused);
         before = system.totals().refused;
+    }
+}
+
+/// An emitter that brings about births by as many numbers as it likes, of which it says it has one.
+struct Greedy {
+    numbers: usize,
+    way: usize,
+}
+
+impl Emit for Greedy {
+    fn count(&self) -> usize {
+        1
+    }
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+        for _ in 0..self.numbers {
+            let number = births.claim();
+            let due = births.due(number, 7.5, from, to);
+            if self.way == 0 {
+                births.refuse(number, due.left());
+                continue;
+            }
+            for at in due {
+                match self.way {
+                    1 => births.offer(number, at, |_, _| Some(Particle::REST)),
+                    _ => assert_eq!(births.give(number, at, |_| Particle::REST).is_ok(), number == 0),
+                }
+            }
+        }
+    }
+}
+
+/// Whoever is born by a number that there is no memory for is refused, and counted, however time is cut.
+#[test]
+fn births_by_numbers_beyond_the_memory_are_refused() {
+    for (way, steps) in [(0, 1), (0, 60), (1, 1), (1, 60), (2, 1), (2, 7), (2, 60)] {
+        let emitter = Greedy { numbers: 3, way };
+        let scene = Scene { emitters: &emitter, ..Scene::EMPTY };
+        let mut system = started(&scene, 100, 1);
+        for step in 1..=steps {
+            system.step_to(&scene, Time::frame(step, steps as u32).part(4, 1));
+        }
+        let (born, all) = (system.totals().born, system.totals().born + system.totals().refused);
+        assert_eq!((born, all), (if way == 0 { 0 } else { 30 }, 90), "{way} in {steps} steps");
+    }
+    // Those of the engine have their numbers in any list: of too few none is left out uncounted.
+    let emitter = Burst { count: 5, at: 0.0, every: 0.0 };
+    let lists = Uncounted(Emitter { burst: Some(emitter), ..Emitter::new(sphere(), 10.0) });
+    let scene = Scene { emitters: &lists, ..Scene::EMPTY };
+    let mut system = started(&scene, 100, 1);
+    let report = system.step(&scene, Time::SECOND);
+    assert_eq!((report.born, report.refused), (10, 5));
+}
+
+/// An emitter with a burst, which takes two numbers, of which it says one.
+struct Uncounted<E>(E);
+
+impl<E: Emit> Emit for Uncounted<E> {
+    fn count(&self) -> usize {
+        1
+    }
+    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+        self.0.emit(from, to, births);
     }
 }

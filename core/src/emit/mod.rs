@@ -80,7 +80,7 @@ pub trait Emit: Sync {
 
     /// Brings about the births between `from` (excluded) and `to` (included).
     ///
-    /// Claims as many numbers of `births` as `count` says.
+    /// Claims as many numbers of `births` as `count` says: births by others may find no memory, and are refused then.
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>);
 }
 
@@ -133,14 +133,17 @@ impl Births<'_> {
         self.number - 1
     }
 
-    /// The births that emitter `number` owes at `rate` per second after `from` until `to`, and goes on from them.
+    /// The births that emitter `number` owes at `rate` per second after `from` until `to`, and goes on from them. A number beyond those that
+    /// there is memory for owes what it would if it had always been there, all of which is refused.
     pub fn due(&mut self, number: usize, rate: f32, from: Time, to: Time) -> Due {
-        let Some(state) = self.workspace.memory.emitter_states.get_mut(number) else { return Due::NONE };
         // Rates are whole numbers of 2⁻³² births per second, which is 2⁻⁶⁴ births per tick.
         let rate = fixed_32(rate);
-        let phase = state.phase;
+        let state = self.workspace.memory.emitter_states.get_mut(number);
+        let phase = state.as_ref().map_or(rate.wrapping_mul(from.ticks()), |state| state.phase);
         let reached = u128::from(phase) + u128::from(rate) * u128::from((to - from).ticks());
-        state.phase = reached as u64;
+        if let Some(state) = state {
+            state.phase = reached as u64;
+        }
         Due { phase, rate, from, next: 1, last: (reached >> 64) as u64 }
     }
 
@@ -181,7 +184,7 @@ impl Births<'_> {
     /// A birth of emitter `number` at the instant `at`, made from the random numbers that belong to it.
     ///
     /// # Errors
-    /// If there is no room, which is counted. It has used up its random numbers all the same.
+    /// If there is no room, or no memory for an emitter of that number, which is counted. It has used up its random numbers all the same.
     pub fn give(&mut self, number: usize, at: Time, make: impl FnOnce(Stream) -> Particle) -> Result<(), Full> {
         let serial = self.count_off_with_room(number, at)?;
         let stream = Stream::new(self.workspace.seed(), number as u32, serial);
@@ -211,7 +214,7 @@ impl Births<'_> {
 
     /// A birth of emitter `number` that may come to nothing: `make` sees who is there. What finds no room is counted.
     pub fn offer(&mut self, number: usize, at: Time, make: impl FnOnce(Stream, &Self) -> Option<Particle>) {
-        let Some(stream) = self.next(number) else { return };
+        let Some(stream) = self.next(number) else { return self.miss(at) };
         let Some(particle) = make(stream, self) else { return };
         // What finds no room is counted there.
         let _ = self.bear(stream, &particle, &Start::of(&particle, at));
@@ -267,12 +270,11 @@ impl Births<'_> {
 
     /// The serial number of an emitter's next birth, if there is room for it; else that is counted.
     fn count_off_with_room(&mut self, number: usize, at: Time) -> Result<u32, Full> {
-        let serial = self.count_off(number).ok_or(Full)?;
-        if self.workspace.is_full() {
+        let serial = self.count_off(number).filter(|_| !self.workspace.is_full());
+        serial.ok_or_else(|| {
             self.miss(at);
-            return Err(Full);
-        }
-        Ok(serial)
+            Full
+        })
     }
 
     /// The same with the random numbers of that birth.
@@ -307,14 +309,14 @@ impl Births<'_> {
         self.observer.refused(1, at);
     }
 
-    /// `count` births of emitter `number` that find no room, at once.
+    /// Counts `count` births of emitter `number` that find no room, at once.
     pub fn refuse(&mut self, number: usize, count: u64) {
         if let Some(state) = self.workspace.memory.emitter_states.get_mut(number) {
             state.serial = state.serial.wrapping_add(count as u32);
-            self.report.refused = self.report.refused.saturating_add(count);
-            if count > 0 {
-                self.observer.refused(count, self.end);
-            }
+        }
+        self.report.refused = self.report.refused.saturating_add(count);
+        if count > 0 {
+            self.observer.refused(count, self.end);
         }
     }
 }
@@ -330,8 +332,6 @@ pub struct Due {
 }
 
 impl Due {
-    const NONE: Self = Self { phase: 0, rate: 0, from: Time::ZERO, next: 1, last: 0 };
-
     /// The number of those that are left.
     #[must_use]
     pub const fn left(&self) -> u64 {
