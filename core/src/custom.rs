@@ -29,6 +29,10 @@ impl<'a> Custom<'a> {
 }
 
 /// The columns of a user's own that a scene has. A slice or reference of them is one.
+///
+/// Numbers lie in memory by a column's place in the list. Names are for who asks: a system that goes on with a scene whose list has other names, or
+/// the same in another order, has the numbers of before under these. Columns that come behind them hold whatever lay there, such as
+/// what constraints keep.
 pub trait CustomList: Sync {
     /// How many.
     fn count(&self) -> usize;

@@ -79,7 +79,8 @@ impl<B> System<B> {
 }
 
 impl<B: Storage> System<B> {
-    /// Forgets everything and puts in what `scene` begins with.
+    /// Forgets everything and puts in what `scene` begins with. Whoever has a number that cannot be used is taken out as the next step ends, as with
+    /// [`spawn`](Self::spawn).
     ///
     /// # Errors
     /// If the memory has not enough emitters, springs or columns for the scene, or holds an attribute for all particles alike that
@@ -101,6 +102,9 @@ impl<B: Storage> System<B> {
 
     /// Moves the world on by `dt`; in no time nobody moves, and only reapers and what writes columns are asked. It cannot fail, does not panic, and its work is bounded; whatever a bound cut
     /// short is counted in the report.
+    ///
+    /// It works in the memory that the system has, and on the stack, of which most programs have far more than enough; on small chips
+    /// it is worth measuring (the crate's front page says how much some scenes take).
     pub fn step(&mut self, scene: &Scene<'_>, dt: Time) -> Report {
         self.step_observed(scene, dt, &mut ())
     }
@@ -141,6 +145,9 @@ impl<B: Storage> System<B> {
     }
 
     /// Puts a particle in now; what it has in columns of a user's own is zero.
+    ///
+    /// One with a number that cannot be used is taken in, its velocity being no number, and out as the next step ends, counted in `died.nonfinite`: where any
+    /// but its lifetime is not finite, its mass is not above zero (of a fixed one: negative), or its radius is negative.
     ///
     /// # Errors
     /// If there is no room; that is counted.
