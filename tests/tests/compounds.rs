@@ -185,6 +185,10 @@ fn what_is_no_solid_or_needs_more_pieces_is_refused() {
     assert!(matches!(CompoundBuf::of_mesh(&ring(), 2e-3, 4), Err(CompoundError::Coarse(4, far)) if far > 2e-3));
     let open = MeshBuf::new(ring().vertices().to_vec(), ring().triangles()[1..].to_vec()).expect("a mesh");
     assert!(matches!(CompoundBuf::of_mesh(&open, 1e-3, 64), Err(CompoundError::Solid(NotSolid::Open(_)))));
+    for within in [-1.0, -f32::MIN_POSITIVE, f32::NAN] {
+        let error = CompoundBuf::of_mesh(&ring(), within, 255).expect_err("nothing is so near");
+        assert!(matches!(error, CompoundError::Within(_)) && error.to_string().contains("from zero on"), "{error}");
+    }
     assert_eq!(CompoundBuf::of(&[]), Err(CompoundError::Pieces(0)));
     let flat = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     assert!(matches!(CompoundBuf::of(&[corners([0.0; 3], [1.0; 3]), flat]), Err(CompoundError::Hull(1, _))));

@@ -2,8 +2,8 @@
 
 use pointmass::constrain::{Distance, Rope, ShapeMatching, TiedRope};
 use pointmass::draw::{
-    Instance, Knot, Line, Patch, Ring, Trails, Vertex, arrows, cells, links, links_by_strain, solids, springs,
-    strained, surface, velocities,
+    Instance, Knot, Line, Lock, Patch, Ring, StrandLight, Trails, Vertex, arrows, cells, links, links_by_strain,
+    solids, springs, strained, strands, surface, velocities,
 };
 use pointmass::index::{SpatialIndex, Structure};
 use pointmass::material::{Heading, TrailMaterial};
@@ -389,5 +389,30 @@ fn arrows_begin_or_end_on_their_surface() {
             assert!(direction.is_some() || (out(off) - length.abs()).abs() < 1e-5, "{from} to {to}");
             assert!(direction.is_none_or(|direction| (to - from).dot(direction) > 3.49), "{from} to {to}");
         }
+    }
+}
+
+/// Strands beyond the particles that there are take no time.
+#[test]
+fn strands_end_where_particles_do() {
+    let start = [0.0, 1.0, 2.0, 3.0].map(|x| Particle { position: Vec3::X * x, ..Particle::REST });
+    let scene = Scene { start: &start, ..Scene::EMPTY };
+    let system = started(&scene, 4, 0);
+    let light = StrandLight { direction: Vec3::NEG_Y, eye: Vec3::Z, ambient: 0.3, gloss: 0.1 };
+    let many = u32::MAX;
+    for ([first, points, count], expected) in [
+        ([0, 2, many], 2),
+        ([1, 2, many], 1),
+        ([0, 3, many], 2),
+        ([0, many, many], 3),
+        ([2, many, 1], 1),
+        ([0, 1, many], 0),
+        ([0, 0, many], 0),
+        ([4, 2, many], 0),
+        ([many, 2, many], 0),
+    ] {
+        let lock = Lock { first, points, count, width: 1e-3 };
+        let mut lines = [Line::NONE; 9];
+        assert_eq!(strands(&system.state(&scene), &lock, &light, &mut lines), (expected, 0), "{lock:?}");
     }
 }

@@ -74,10 +74,13 @@ impl StrandLight {
 /// ```
 pub fn strands(state: &State<'_>, lock: &Lock, light: &StrandLight, into: &mut [Line]) -> (usize, usize) {
     let segments = lock.points.saturating_sub(1);
-    let numbers = (0..lock.count).flat_map(|strand| (0..segments).map(move |i| (strand, i)));
+    // Nobody is there beyond the start.
+    let (count, start) = (if segments > 0 { lock.count } else { 0 }, state.springs.start);
+    let bases = (0..count).map_while(|strand| lock.first.checked_add(strand.checked_mul(lock.points)?));
+    let bases = bases.take_while(|&base| base < start);
+    let numbers = bases.flat_map(|base| (0..segments.min(start - base)).map(move |i| (base, i)));
     let mut looks = Looks::of(state);
-    let line = |(strand, i): (u32, u32)| {
-        let base = lock.first.checked_add(strand.checked_mul(lock.points)?)?;
+    let line = |(base, i): (u32, u32)| {
         let row = |i: u32| state.springs.row(base.checked_add(i)?);
         let rows = [row(i)?, row(i + 1)?];
         // At each end the direction is that from neighbour to neighbour.

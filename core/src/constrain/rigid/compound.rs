@@ -50,6 +50,8 @@ pub enum CompoundError {
     Pieces(usize),
     /// So many pieces, as many as there may be, are still so far off the mesh \[m\].
     Coarse(usize, f32),
+    /// How far pieces may be off the mesh is less than nothing \[m\], or no number.
+    Within(f32),
 }
 
 impl fmt::Display for CompoundError {
@@ -63,6 +65,9 @@ impl fmt::Display for CompoundError {
                     f,
                     "cannot be cut into {count} pieces within that: they are still {far:?} m off it in some place"
                 )
+            }
+            Self::Within(within) => {
+                write!(f, "cannot be cut within {within:?} m: that has to be a number from zero on")
             }
         }
     }
@@ -106,8 +111,11 @@ impl CompoundBuf {
     /// It takes time with the triangles times the planes that are tried, some 80 for each cut: of 500 triangles some seconds.
     ///
     /// # Errors
-    /// If the mesh is not closed, or so many pieces are not enough.
+    /// If `within` is negative or no number, the mesh is not closed, or so many pieces are not enough.
     pub fn of_mesh(mesh: &MeshBuf, within: f32, most: usize) -> Result<Self, CompoundError> {
+        if !(within >= 0.0) {
+            return Err(CompoundError::Within(within));
+        }
         let Enclosed { origin, triangles, .. } = Enclosed::of(mesh).map_err(CompoundError::Solid)?;
         let (hulls, leaves) = cut(&triangles, within, most.min(MOST));
         if hulls.is_empty() {
