@@ -443,6 +443,8 @@ lists! {
     [const N: usize] [Material<'_>; N];
     #[cfg(feature = "alloc")]
     [] alloc::vec::Vec<ContactMaterial>;
+    #[cfg(feature = "alloc")]
+    [] alloc::vec::Vec<Material<'_>>;
 }
 
 /// The elasticity and friction between two things that touch.

@@ -416,3 +416,12 @@ fn strands_end_where_particles_do() {
         assert_eq!(strands(&system.state(&scene), &lock, &light, &mut lines), (expected, 0), "{lock:?}");
     }
 }
+
+/// Materials in a vector are a list of them.
+#[test]
+fn a_vector_of_materials_is_a_list() {
+    let materials = vec![Material::default(), Material { glow: 0.5, ..Material::default() }];
+    let scene = Scene { materials: &materials, ..Scene::EMPTY };
+    assert_eq!((scene.materials.count(), scene.materials.get(1)), (2, Some(materials[1])));
+    assert_eq!(scene.materials.get(2), None);
+}
