@@ -54,8 +54,8 @@ fn ties_of_rope_ends_are_the_ropes_own() {
     let scene = |ends: &str, ties: &str| {
         let text = format!(
             r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.80665, 0]}}}}], "ropes": [
-            {{"curve": [[0, 0, 0], [1, 0, 0]], "segments": 8, "fixed": [0]}},
-            {{"curve": [[1, 0, 0], [2, 0, 0]], "segments": 8{ends}}}]{ties}}}"#
+            {{"curve": [[0, 0, 0], [1, 0, 0]], "segments": 8, "weight": 0.3, "fixed": [0]}},
+            {{"curve": [[1, 0, 0], [2, 0, 0]], "segments": 8, "weight": 0.3{ends}}}]{ties}}}"#
         );
         after(&model(&text).unwrap(), 1.0, 4, Method::Symplectic)
     };
