@@ -17,7 +17,8 @@ impl Bodies<'_> {
         }
     }
 
-    /// Says as a sub-step is prepared that a constraint solves for a particle and many others at once, without what is laid on it.
+    /// Says as a sub-step is prepared that a constraint solves for a particle and many others at once, without what is laid on it. A rigid [`Tie`](super::Tie)
+    /// to a particle of another such constraint lays neither on the other.
     pub fn join(&mut self, row: usize) {
         if let Some(load) = self.loads.get_mut(row) {
             load.solved = max(load.solved, JOINED);
@@ -41,7 +42,7 @@ impl Bodies<'_> {
         self.each_of(particles, Self::bear);
     }
 
-    /// Joins all of these, likewise.
+    /// Joins all particles of such places in the scene's start, as [`join`](Self::join) does one.
     pub(super) fn join_all(&mut self, particles: &[u32]) {
         self.each_of(particles, Self::join);
     }

@@ -1,4 +1,4 @@
-//! The last sweep over velocities of a step, from the ground up: what rests shows no speed.
+//! The last sweep over velocities of a step, from the ground up, so that what rests shows hardly any speed.
 
 use super::super::lists::{Face, Pair};
 use super::{Pass, SUPPORT};
