@@ -133,7 +133,8 @@ fn hem(fixed: &[usize], kind: &str) -> Value {
     })
 }
 
-/// What is solved for apart and sewn together hangs still, as low as with many sub-steps but for what seams open: some n² g h² where n rows hang below.
+/// Two bodies that are solved for apart and sewn together hang still, as low as with many sub-steps but for what the seam opens: some n² g h² where n
+/// rows hang below.
 #[test]
 fn sheets_hang_still_with_what_is_solved_for_apart() {
     for (name, parts) in [("curtains", curtains(&top())), ("rod", hem(&top(), "strand")), ("rope", hem(&top(), "rope"))]

@@ -46,7 +46,7 @@ impl Pull {
         }
     }
 
-    /// What to do about it where it has no bound.
+    /// The advice on one that has no bound.
     pub(crate) fn without_bound(&self) -> Option<String> {
         let Self { place, infinite_at, .. } = self;
         infinite_at.map(|distance| match distance {

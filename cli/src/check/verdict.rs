@@ -11,11 +11,11 @@ pub(crate) enum Verdict {
     Own,
     /// Nothing grows.
     Stable,
-    /// What was looked at does not grow; other forces were not.
+    /// Nothing grows of what was looked at, and there are forces that were not.
     NotKnown,
     /// Nothing grows where the scene starts, but in other poses of its springs something may.
     NotInEveryPose,
-    /// What nothing damps grows, as at any step.
+    /// Oscillations that nothing damps grow, as at any step.
     Grows,
     /// Something grows.
     Unstable,

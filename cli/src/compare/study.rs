@@ -44,7 +44,7 @@ impl Subject {
         self.choose("distances", "triangles")
     }
 
-    /// What is looked at on the way there.
+    /// The name of what is looked at on the way there.
     pub(crate) fn visits(self) -> &'static str {
         self.choose("nodes", "boxes")
     }
@@ -135,7 +135,7 @@ pub(crate) struct Figure {
     pub(crate) spread: f64,
     /// The median over the best contestant's.
     pub(crate) ratio: f64,
-    /// Whether the best cannot be told apart from it, nor from anybody between both.
+    /// True if the best cannot be told apart from it, nor from anybody between both.
     pub(crate) ties: bool,
     /// Nodes or rows of cells looked at, for each point or query; of a mesh by brute force the boxes of triangles.
     pub(crate) visits: Option<f64>,

@@ -4,7 +4,7 @@ use super::Bodies;
 use core::cmp::max;
 use glam::Vec3;
 
-/// What [`Load::solved`](super::load::Load) is of a particle that is solved for with others, and of one that bears what is laid on it there.
+/// The values of [`Load::solved`](super::load::Load) for a particle that is solved for with others, and for one that bears what is laid on it there.
 const JOINED: u32 = 1;
 const BEARS: u32 = 2;
 

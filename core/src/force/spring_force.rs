@@ -282,8 +282,7 @@ fn sort_by_ends(springs: &[Spring], last: &mut [u32], incident: &mut [u32]) {
     }
 }
 
-/// The name of a list, a sum over its springs of their places and ends, mixed. It is asked for in each step: no term waits for another, which
-/// takes a nanosecond for each on hosts.
+/// The name of a list, a sum over its springs of their places and ends, mixed. It is asked for in each step, so no term waits for another.
 fn name_of(springs: &[Spring]) -> u32 {
     let mixed = |(place, spring): (usize, &Spring)| {
         let [a, b] = spring.ends;

@@ -62,7 +62,7 @@ fn memory_is_enough_or_said_to_be_too_small() {
     }
 }
 
-/// Of points that an index has beyond those that are asked about nobody is near.
+/// Points that an index has beyond those that are asked about are near nobody.
 #[test]
 fn an_index_of_more_points_finds_those_there_are() {
     let points = Spread::Cube.points(200, 4);
