@@ -18,7 +18,7 @@ const PULL: f64 = 10.0;
 pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     let Some(stand) = check.methods.iter().find(|stand| stand.method == check.integrator) else { return Vec::new() };
     let mut advice = Vec::new();
-    match stand.every_pose.and(stand.drag).and(stand.contact).and(stand.goal) {
+    match stand.every_pose.and(stand.drag).and(stand.contact).and(stand.goal).and(stand.gas) {
         _ if stand.chooses_steps => advice.push(format!("{} chooses its own steps", stand.method)),
         limit if limit.admits(check.h()) => advice.push(fine(check, limit)),
         Limit::Step(limit) => advice.extend(too_long(check, stand, limit)),
@@ -49,10 +49,12 @@ fn fine(check: &Study, limit: Limit) -> String {
             }
         }
         _ if others.is_empty() => {
-            format!("neither springs nor drag nor contacts nor goals limit the step of {method}: {step} or any other")
+            format!(
+                "neither springs nor drag nor contacts nor goals nor gas limit the step of {method}: {step} or any other"
+            )
         }
         _ => format!(
-            "neither springs nor drag nor contacts nor goals limit the step of {method}, but others do: whether {step} are \
+            "neither springs nor drag nor contacts nor goals nor gas limit the step of {method}, but others do: whether {step} are \
              stable is not known"
         ),
     }
@@ -65,6 +67,9 @@ fn too_long(check: &Study, stand: &Stand, limit: f64) -> Vec<String> {
         match stand.at_rest.and(stand.drag).admits(check.h()) {
             true if !stand.contact.admits(check.h()) => {
                 format!("steps of {step} by {} are too long for contacts by force: hits add energy", stand.method)
+            }
+            true if !stand.gas.admits(check.h()) => {
+                format!("steps of {step} by {} are too long for gas: it throws its mesh about", stand.method)
             }
             true if stand.every_pose.admits(check.h()) => {
                 format!(
@@ -177,8 +182,8 @@ fn world(check: &Study) -> Vec<String> {
     }
     if !check.judged_at_start.is_empty() {
         advice.push(format!(
-            "judged by how fast and how near to each other particles start: {}; where they become faster or nearer, the step \
-             has to be shorter, and --substeps auto makes it so",
+            "judged by how fast and how near to each other particles start, in the winds of the first 8 s: {}; where they become \
+             faster or nearer, the step has to be shorter, and --substeps auto makes it so",
             check.judged_at_start.join(" and ")
         ));
     }

@@ -1,9 +1,10 @@
-//! The bounds on the step of a scene: its springs in every pose, drag, contacts and goals, over whole lives; and constraints.
+//! The bounds on the step of a scene: its springs in every pose, drag, contacts, goals and gas, over whole lives; and constraints.
 //!
 //! They are bounds on the steps that a method takes: those of a scene, or what it cuts them into.
 
 use super::body::{Body, extremes};
 use super::contact::Contact;
+use super::gas::Gas;
 use super::goal::Goals;
 use super::hold::Hold;
 use super::onset::Onset;
@@ -27,6 +28,8 @@ pub(crate) struct Bounds {
     pub(crate) contact: Option<Contact>,
     /// The goals that particles are led to.
     pub(crate) goals: Option<Goals>,
+    /// The gas in meshes.
+    pub(crate) gas: Option<Gas>,
     /// The constraints.
     pub(crate) holds: Vec<Hold>,
     /// The newborn that drag slows down most.
@@ -58,6 +61,7 @@ impl Bounds {
             born: dragged(model, bodies.iter().filter(|body| body.is_born())),
             contact: Contact::of(model, &bodies),
             goals: Goals::of(model, &bodies),
+            gas: Gas::of(model, &bodies),
             holds: Hold::all(model),
             pushed: bodies.iter().find_map(|body| body.push(model)),
             substeps: f64::from(model.substeps),
@@ -80,9 +84,9 @@ impl Bounds {
         }
     }
 
-    /// The bound of springs, drag and goals, which act for long.
+    /// The bound of springs, drag, goals and gas, which act for long.
     fn lasting_step(&self, method: Method) -> Limit {
-        self.poses_step(method).and(self.drag_step(method)).and(self.goal_step(method))
+        self.poses_step(method).and(self.drag_step(method)).and(self.goal_step(method)).and(self.gas_step(method))
     }
 
     /// The largest step that springs allow in every pose.
@@ -93,6 +97,11 @@ impl Bounds {
     /// The largest step that goals allow.
     pub(crate) fn goal_step(&self, method: Method) -> Limit {
         self.goals.as_ref().map_or(Limit::Unconditional, |goals| goals.largest_step(method))
+    }
+
+    /// The largest step that gas in meshes allows.
+    pub(crate) fn gas_step(&self, method: Method) -> Limit {
+        self.gas.as_ref().map_or(Limit::Unconditional, |gas| gas.largest_step(method))
     }
 
     /// The largest step that drag allows.
@@ -159,14 +168,17 @@ impl Bounds {
 
     /// The part that bounds the step, in words.
     pub(crate) fn culprit(&self, method: Method) -> Option<String> {
-        let strictest = |part: &&Part| match part.mode.largest_step(method) {
+        let length = |limit: Limit| match limit {
             Limit::Never => 0.0,
             Limit::Step(step) => step,
             Limit::Unconditional => f64::INFINITY,
         };
         let goal = self.goals.as_ref().map(|goals| &goals.part);
         let parts = [self.stiffest.as_ref(), self.dragged.as_ref(), goal].into_iter().flatten();
-        parts.min_by(|a, b| strictest(a).total_cmp(&strictest(b))).map(|part| format!("{} {}", part.place, part.about))
+        let parts = parts.map(|part| (part, part.mode.largest_step(method)));
+        let gas = self.gas.as_ref().map(|gas| (&gas.part, gas.largest_step(method)));
+        let strictest = parts.chain(gas).min_by(|a, b| length(a.1).total_cmp(&length(b.1)));
+        strictest.map(|(part, _)| format!("{} {}", part.place, part.about))
     }
 }
 

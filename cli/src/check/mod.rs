@@ -10,6 +10,7 @@ mod body;
 mod bounds;
 mod contact;
 mod fall;
+mod gas;
 mod goal;
 mod hit;
 mod hold;
@@ -98,6 +99,7 @@ pub(crate) fn check(args: &Check) -> Outcome {
 /// The oscillations that pictures show.
 fn scenery(study: &Study, spectra: Vec<Spectrum>, method: Method) -> Scenery {
     let modes = spectra.into_iter().flat_map(|spectrum| spectrum.modes);
-    let parts = [&study.dragged, &study.touching, &study.led].into_iter().flatten().map(|part| part.mode);
+    let parts =
+        [&study.dragged, &study.touching, &study.led, &study.filled].into_iter().flatten().map(|part| part.mode);
     Scenery { modes: modes.chain(parts).collect(), method, dt: study.h() }
 }

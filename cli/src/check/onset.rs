@@ -1,10 +1,15 @@
-//! How much forces brake particles as a scene starts that brake the more the faster these are, or the more are around them.
+//! How much forces brake particles as a scene starts that brake the more the faster these or the air about them is, or the more are around them.
 
 use super::net::wide;
 use super::world::MOST;
 use crate::stall::gravity;
+use pointmass::force::{Aerodynamics, CylinderDrag, Flow, FlowKind};
 use pointmass::scene::Model;
-use pointmass::{Emitter, ForceKind, Particle, Viscosity};
+use pointmass::{Emitter, ForceKind, Particle, Time, Vec3, Viscosity};
+
+/// The instants at which winds are looked at, and the time between them \[s\].
+const INSTANTS: u64 = 17;
+const APART: f64 = 0.5;
 
 /// The braking of a scene's start.
 pub(crate) struct Onset {
@@ -12,8 +17,8 @@ pub(crate) struct Onset {
     quadratic: f64,
     /// The uniform acceleration of all \[m/s²\].
     gravity: f64,
-    /// How much its neighbours brake each particle of the start \[kg/s\].
-    crowd: Vec<f64>,
+    /// How much its neighbours, and the air about what it is a corner or an end of, brake each particle of the start \[kg/s\].
+    around: Vec<f64>,
 }
 
 impl Onset {
@@ -23,18 +28,18 @@ impl Onset {
         Self {
             quadratic: model.forces.0.iter().map(|force| f64::from(square(force).max(0.0))).sum(),
             gravity: wide(gravity(model)).norm(),
-            crowd: crowd(model),
+            around: crowd(model).into_iter().zip(air(model)).map(|(crowd, air)| crowd + air).collect(),
         }
     }
 
     /// Nothing of it, for what has to hold as long as a scene runs.
     pub(crate) fn none() -> Self {
-        Self { quadratic: 0.0, gravity: 0.0, crowd: Vec::new() }
+        Self { quadratic: 0.0, gravity: 0.0, around: Vec::new() }
     }
 
     /// How much particle `number` of the start is braked that weighs `mass` \[kg\] where it is lightest \[kg/s\].
     pub(crate) fn of_particle(&self, number: usize, particle: &Particle, mass: f64) -> f64 {
-        let around = self.crowd.get(number).copied().unwrap_or(0.0);
+        let around = self.around.get(number).copied().unwrap_or(0.0);
         self.square(wide(particle.velocity).norm(), mass) + around
     }
 
@@ -54,8 +59,8 @@ impl Onset {
 /// How much viscosity brakes each of the first few thousand particles at the most \[kg/s\]: the row sums of its matrix, in coordinates
 /// scaled by the roots of the masses, which no eigenvalue exceeds.
 fn crowd(model: &Model) -> Vec<f64> {
+    let mut sums = vec![0.0; model.particles.len()];
     let particles = &model.particles[..model.particles.len().min(MOST)];
-    let mut sums = vec![0.0; particles.len()];
     for force in &model.forces.0 {
         let ForceKind::Viscosity(viscosity) = force else { continue };
         for (i, a) in particles.iter().enumerate() {
@@ -68,6 +73,55 @@ fn crowd(model: &Model) -> Vec<f64> {
         }
     }
     sums
+}
+
+/// How much the air brakes each corner of a surface and each end of a segment at the most, in the winds of the first seconds, from wherever these
+/// come \[kg/s\]: how forces grow with speeds, which where drag grows with the square of the speed is twice what it has for each metre a second.
+fn air(model: &Model) -> Vec<f64> {
+    let mut most = vec![0.0; model.particles.len()];
+    for instant in 0..INSTANTS {
+        let time = Time::from_seconds_f64(instant as f64 * APART);
+        let mut sums = vec![0.0; most.len()];
+        for force in &model.forces.0 {
+            match force {
+                ForceKind::Aerodynamics(air) => brake_corners(air, model, time, &mut sums),
+                ForceKind::CylinderDrag(air) => brake_ends(air, model, time, &mut sums),
+                _ => {}
+            }
+        }
+        most.iter_mut().zip(sums).for_each(|(most, sum)| *most = sum.max(*most));
+    }
+    most
+}
+
+/// The speed of the air about some particles, as the mean of them sees it \[m/s\].
+fn wind(field: &Vec<FlowKind>, about: &[&Particle], time: Time) -> f64 {
+    let mean = |of: fn(&Particle) -> Vec3| about.iter().map(|particle| of(particle)).sum::<Vec3>() / about.len() as f32;
+    let (place, velocity) = (mean(|particle| particle.position), mean(|particle| particle.velocity));
+    wide(field.velocity(place, time) - velocity).norm()
+}
+
+/// Each corner bears a third of what a triangle feels, ρ A |u| C for each metre a second at the most.
+fn brake_corners(air: &Aerodynamics<Vec<[u32; 3]>, Vec<FlowKind>>, model: &Model, time: Time, sums: &mut [f64]) {
+    let coefficient = f64::from(air.drag.max(air.friction).max(air.lift.abs()));
+    for corners in &air.triangles {
+        let [a, b, c] = corners.map(|corner| &model.particles[corner as usize]);
+        let double = wide(b.position - a.position).cross(&wide(c.position - a.position)).norm();
+        let brake = 0.5 * double * f64::from(air.density) * wind(&air.field, &[a, b, c], time) * coefficient;
+        corners.iter().for_each(|&corner| sums[corner as usize] += brake / 3.0);
+    }
+}
+
+/// Each end bears half of what a segment feels.
+fn brake_ends(air: &CylinderDrag<Vec<[u32; 2]>, Vec<FlowKind>>, model: &Model, time: Time, sums: &mut [f64]) {
+    for ends in &air.segments {
+        let [a, b] = ends.map(|end| &model.particles[end as usize]);
+        let half = 0.5 * wide(b.position - a.position).norm();
+        for (&end, particle) in ends.iter().zip([a, b]) {
+            let brake = air.across(wind(&air.field, &[particle], time) as f32);
+            sums[end as usize] += 2.0 * f64::from(brake) * half;
+        }
+    }
 }
 
 /// How much two particles drag each other along \[kg/s\].

@@ -14,7 +14,7 @@ use pointmass::stability::Limit;
 use std::fmt::Write;
 
 /// The meaning of the figures.
-const NOTES: [&str; 8] = [
+const NOTES: [&str; 9] = [
     "A step is stable while nothing that should swing or come to rest grows. It is not accurate yet.",
     "At rest: the oscillations of the springs where the scene begins, as if each had its rest length there, without gravity \
      and other forces; what only drifts is left out. Of too many to work out all, one tells what they stand at most.",
@@ -23,6 +23,8 @@ const NOTES: [&str; 8] = [
     "Contact: hits of balls that push each other apart give back no more energy than they take on average over how the steps fall \
      within them, within 2 %; single ones may, rk4 by 39 % near that step. Nor does a ball grow restless among as many of its size as can touch it.",
     "Goal: whoever is held by goals, with its springs and drag, in every pose.",
+    "Gas: it pushes nobody farther in a step than a quarter of the radius of its mesh, 3 V / A, and answers what changes its volume within what \
+     methods stand, as the scene starts.",
     "Drag: with that which grows with the speed, and viscosity, as fast and as near to each other as particles start, or as fast as they \
      fall at last. Of steps of which nothing is said but that they are not known, other forces were not looked at.",
     "Particles whose drag or mass changes over their lives are taken at their lightest, most and least braked.",
@@ -69,7 +71,7 @@ pub(crate) fn tell(study: &Study, charts: &[Chart<'_>], report: &mut dyn Report)
     Ok(())
 }
 
-/// The bounds on the steps of every method; those of contacts and goals only where there are some.
+/// The bounds on the steps of every method; those of contacts, goals and gas only where there are some.
 fn steps(study: &Study) -> Table {
     let stands = || study.methods.iter();
     let mut table = Table::default();
@@ -82,6 +84,9 @@ fn steps(study: &Study) -> Table {
     }
     if study.led.is_some() {
         table.column("goal", stands().map(|stand| limit(stand.goal)));
+    }
+    if study.filled.is_some() {
+        table.column("gas", stands().map(|stand| limit(stand.gas)));
     }
     table.words(format!("at {}", time(study.h())), stands().map(verdict));
     table
@@ -120,6 +125,7 @@ pub(crate) fn sheet(study: &Study) -> Table {
     table.column("drag_s", stands().map(|stand| seconds(stand.drag)));
     table.column("contact_s", stands().map(|stand| seconds(stand.contact)));
     table.column("goal_s", stands().map(|stand| seconds(stand.goal)));
+    table.column("gas_s", stands().map(|stand| seconds(stand.gas)));
     table.column("dt_s", stands().map(|_| study.dt));
     table.column("stable", stands().map(|stand| stand.stable));
     table.column("growth_across_per_s", stands().map(|stand| stand.growth_across));
@@ -160,6 +166,7 @@ fn facts(study: &Study) -> Vec<(&'static str, String)> {
             .map(|(part, hit)| ("contact", format!("{} {}; a hit lasts {}", part.place, part.about, time(hit)))),
     );
     facts.extend(study.led.as_ref().map(|part| ("goal", format!("{} {}", part.place, part.about))));
+    facts.extend(study.filled.as_ref().map(|part| ("gas", format!("{} {}", part.place, part.about))));
     facts.extend(study.followed.as_ref().map(|followed| {
         let (step, g) = (time(followed.step), plain(followed.acceleration));
         let bounces = counted(followed.max_bounces as usize, "bounce");

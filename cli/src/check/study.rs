@@ -45,6 +45,8 @@ pub(crate) struct Study {
     pub(crate) hit: Option<f64>,
     /// The goal that holds the most stiffly.
     pub(crate) led: Option<Part>,
+    /// The gas that allows the shortest steps.
+    pub(crate) filled: Option<Part>,
     /// The constraints.
     pub(crate) holds: Vec<Hold>,
     pub(crate) methods: Vec<Stand>,
@@ -91,6 +93,8 @@ pub(crate) struct Stand {
     pub(crate) contact: Limit,
     /// The largest step that is stable for whoever goals hold, in every pose.
     pub(crate) goal: Limit,
+    /// The largest step in which gas in meshes pushes nobody far, and makes nothing grow.
+    pub(crate) gas: Limit,
     /// True if it stands the step that is judged, in every pose and as far as forces are looked at.
     pub(crate) stable: bool,
     /// How it stands that step.
@@ -126,6 +130,7 @@ impl Study {
             hit: bounds.contact.as_ref().map(Contact::duration),
             touching: bounds.contact.map(|contact| contact.part),
             led: bounds.goals.map(|goals| goals.part),
+            filled: bounds.gas.map(|gas| gas.part),
             holds: bounds.holds,
             methods,
             followed: followed(model),
@@ -164,6 +169,7 @@ fn stand(method: Method, bounds: &Bounds, spectra: &[Spectrum], (h, is_whole): (
         drag,
         contact: bounds.contact_step(method),
         goal: bounds.goal_step(method),
+        gas: bounds.gas_step(method),
         stable: method.chooses_steps() || bounds.largest_step(method).admits(h),
         verdict: Verdict::Stable,
         growth_across: bounds.growth(method, h),

@@ -24,7 +24,7 @@ pub(crate) enum Verdict {
 impl Verdict {
     /// The verdict on steps of so long \[s\], once all limits are known, and whether all forces were looked at.
     pub(crate) fn on(stand: &Stand, h: f64, is_whole: bool) -> Self {
-        let others = stand.drag.and(stand.contact).and(stand.goal);
+        let others = stand.drag.and(stand.contact).and(stand.goal).and(stand.gas);
         match stand.every_pose {
             _ if stand.chooses_steps => Self::Own,
             Limit::Never if stand.growth_across > 0.0 => Self::Grows,

@@ -52,7 +52,7 @@ fn is_judged(force: &ForceKind) -> bool {
 /// Who will be born among whom nobody knows, nor is it worked out for more than a few thousand.
 fn is_judged_at_start(model: &Model, force: &ForceKind) -> bool {
     match force {
-        ForceKind::QuadraticDrag(_) => true,
+        ForceKind::QuadraticDrag(_) | ForceKind::Aerodynamics(_) | ForceKind::CylinderDrag(_) => true,
         ForceKind::Viscosity(_) => model.emitters.is_empty() && model.particles.len() <= MOST,
         _ => false,
     }

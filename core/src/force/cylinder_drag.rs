@@ -96,7 +96,8 @@ impl<S, F> CylinderDrag<S, F> {
     }
 
     /// What each metre across a wind of some speed \[m/s\] feels for its speed \[kg/(m s)\]: ½ μ Re C_D.
-    fn across(&self, speed: f32) -> f32 {
+    #[must_use]
+    pub fn across(&self, speed: f32) -> f32 {
         let viscosity = self.viscosity;
         // μ Re, so that air without viscosity is no exception.
         let flow = self.density * self.diameter * speed;

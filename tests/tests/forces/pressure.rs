@@ -2,7 +2,8 @@
 
 use super::forces;
 use pointmass::constrain::{Shell, ShellParams, mesh_hinges};
-use pointmass::{Drag, Force, Method, Particle, Pressure, Scene, Spring, Time, Vec3};
+use pointmass::shape::Plane;
+use pointmass::{Drag, Force, Gravity, Method, Particle, Pressure, Scene, Spring, Time, Vec3};
 use pointmass_tests::{Random, every, f64s, gap, icosahedron, often, run, started};
 
 type Mesh = Vec<[u32; 3]>;
@@ -130,6 +131,85 @@ fn a_balloon_rests_where_its_skin_holds_the_gas_however_damped_that_is() {
     {
         let r = radius(damping, substeps, method);
         assert!((r / right - 1.0).abs() < 5e-3, "{damping} s, {method} in {substeps}: {r}, not {right}");
+    }
+}
+
+/// A ball of sheet that gas holds up bounces off a smooth floor, whatever its size, comes back about as high in any sub-steps, and goes along the floor as gravity
+/// has it, beside another that falls freely and is of the same shell.
+#[test]
+fn an_inflated_ball_bounces_off_a_floor_and_slides_along() {
+    let (unit, faces) = ball(Vec3::ZERO, 0.0);
+    let both = |size: f32| {
+        let at = |up: f32| {
+            move |p: &Particle| Particle {
+                position: p.position * size + Vec3::Y * up * size,
+                mass: size * size * 3e-3,
+                ..*p
+            }
+        };
+        unit.iter().map(at(2.5)).chain(unit.iter().map(at(200.0))).collect::<Vec<_>>()
+    };
+    let count = unit.len() as u32;
+    let upper: Mesh = faces.iter().map(|face| face.map(|corner| corner + count)).collect();
+    let all: Vec<u32> = (0..2 * count).collect();
+    let triangles = [&faces[..], &upper[..]].concat();
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let bounce = |size: f32, substeps: u32, method: Method| {
+        let start = both(size);
+        // Lengths by a size, times by its root, and masses by its square: forces go by its square, and the gas by its cube.
+        let params = ShellParams {
+            stretch: [400.0 * size; 2],
+            shear: 200.0 * size,
+            bending: 1e-4 * size.powi(3),
+            damping: 0.01 * size.sqrt(),
+        };
+        let skin = Shell {
+            particles: &all[..],
+            triangles: &triangles[..],
+            hinges: mesh_hinges(&triangles),
+            warp: Vec3::X,
+            params,
+        };
+        let gas = |triangles| Pressure { triangles, amount: 400.0 * size.powi(3), outside: 0.0 };
+        let forces = (Gravity { acceleration: Vec3::new(1.5, -9.5, 0.0) }, gas(&faces), gas(&upper));
+        let scene = Scene {
+            start: &start,
+            forces: &forces,
+            constraints: &skin,
+            colliders: &floor,
+            substeps,
+            integrator: method.integrator(),
+            ..Scene::EMPTY
+        };
+        let mut system = started(&scene, start.len(), 0);
+        let (dt, mut heights) = (f64::from(size).sqrt() / 30.0, vec![]);
+        for frame in 1..=60 {
+            system.step(&scene, Time::from_seconds_f64(dt * f64::from(frame)) - system.time());
+            let x = &system.particles().position[..count as usize];
+            heights.push(x.iter().map(|x| x.y).sum::<f32>() / (count as f32 * size));
+        }
+        assert_eq!(system.totals().caps.crushed, 0, "{size} m, {method}");
+        let (v, t) = (system.particles().velocity, 60.0 * dt as f32);
+        let mean = |v: &[Vec3]| v.iter().copied().sum::<Vec3>() / count as f32;
+        let [low, high] = [mean(&v[..count as usize]), mean(&v[count as usize..])];
+        assert!((low.x / (1.5 * t) - 1.0).abs() < 0.05, "{size} m, {method} in {substeps}: {low}, not {}", 1.5 * t);
+        assert!((high.y / (-9.5 * t) - 1.0).abs() < 0.01, "{size} m, {method} in {substeps}: {high}");
+        let lowest = heights.iter().position(|&y| y == heights.iter().copied().fold(9.0, f32::min)).unwrap_or(0);
+        (heights[lowest], heights[lowest..].iter().copied().fold(0.0, f32::max))
+    };
+    let right = bounce(1.0, 16, Method::Symplectic);
+    let cases = [
+        (0.2, 4, Method::Symplectic),
+        (0.2, 8, Method::Verlet),
+        (5.0, 4, Method::Midpoint),
+        (1.0, 6, Method::Rk4),
+        (0.03, 5, Method::Symplectic),
+        (1.0, 8, Method::Implicit),
+    ];
+    for (size, substeps, method) in cases.into_iter().step_by(every(3)) {
+        let (low, high) = bounce(size, substeps, method);
+        assert!((low - right.0).abs() < 0.03, "{size} m, {method} in {substeps}: {low}, not {}", right.0);
+        assert!((high - right.1).abs() < 0.45, "{size} m, {method} in {substeps}: {high}, not {}", right.1);
     }
 }
 

@@ -227,6 +227,73 @@ fn goals_hold_as_springs_do() {
     assert_eq!(limit(&format!("{soft}, {hard}")).map(|(place, _)| place), Some("goals[1]".into()));
 }
 
+/// Air blows the harder at whoever is light and large: as much as the law has it, wherever it comes from, whatever the mesh.
+#[test]
+fn air_brakes_surfaces_and_segments() {
+    let drag = |file: &str, method: Method| {
+        let file = SceneFile::from_json("a.json", file).expect("a scene");
+        Bounds::of(&Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene")).drag_step(method)
+    };
+    for (cells, density, wind) in [(1, 0.1, 4.0), (5, 0.02, 16.0)] {
+        let sheet = |up: &str| {
+            format!(
+                r#"{{"forces": [{{"wind": {{"field": [{{"uniform": {{"velocity": {up}}}}}]}}}}], "cloths": [{{"form": {{"sheet": {{"corner": [0, 0, 0],
+                    "sides": [[1, 0, 0], [0, 0, 1]], "cells": [{cells}, {cells}]}}}}, "density": {density}, "air": {{}},
+                    "shell": {{"stretch": [1000, 1000], "shear": 300, "bending": 1e-5}}}}]}}"#
+            )
+        };
+        for up in [format!("[0, {wind}, 0]"), format!("[{wind}, 0, 0]")] {
+            let Limit::Step(step) = drag(&sheet(&up), Method::Symplectic) else { panic!("{up}") };
+            assert!((step * 1.2 * 1.2 * wind / density / 2.0 - 1.0).abs() < 1e-4, "{cells} {up}: {step}");
+            assert_eq!(drag(&sheet(&up), Method::Implicit), Limit::Unconditional);
+        }
+    }
+    let hair = |curve: &str| {
+        format!(
+            r#"{{"forces": [{{"wind": {{"field": [{{"uniform": {{"velocity": [0, 9, 0]}}}}]}}}}], "strands": [{{"form": {{"curve": {curve}}}, "segments": 8, "radius": 5e-5, "young": 4e9, "density": 1300,
+                "air": {{}}}}]}}"#
+        )
+    };
+    let [level, upright] = ["[[0, 0, 0], [0.2, 0, 0]]", "[[0, 0, 0], [0, 0.2, 0]]"].map(|curve| {
+        let Limit::Step(step) = drag(&hair(curve), Method::Symplectic) else { panic!("{curve}") };
+        step
+    });
+    assert!((level / upright - 1.0).abs() < 1e-4 && level < 0.02 && level > 0.005, "{level} {upright}");
+}
+
+/// In steps that are just short enough gas fills a mesh as in far shorter ones; in far longer ones it does not.
+#[test]
+fn gas_bounds_the_step() {
+    let filled = |amount: f64, outside: f64, method: Method, share: f64| {
+        let text = format!(
+            r#"{{"cloths": [{{"form": {{"mesh": "../scenes/assets/knot.off"}}, "density": 1,
+                "gas": {{"amount": {amount}, "outside": {outside}}},
+                "shell": {{"stretch": [3000, 3000], "shear": 1000, "bending": 1e-5, "damping": 0.02}}}}]}}"#
+        );
+        let file = SceneFile::from_json("a.json", &text).expect("a scene");
+        let mut model = Model::load(&file, "a.json", &mut crate::load::Disk).expect("a sound scene");
+        let gas = Bounds::of(&model).gas.expect("gas");
+        let Limit::Step(limit) = gas.largest_step(method) else { panic!("{method}") };
+        model.integrator = method.into();
+        let mut system = System::with(Heap::new(model.size(model.particles.len())));
+        system.start(&model.scene(), 1).expect("room");
+        let steps = (0.15 / (share * limit)).ceil();
+        for _ in 0..steps as u32 {
+            system.step(&model.scene(), Time::from_seconds_f64(0.15 / steps));
+        }
+        let x = system.particles().position;
+        let middle = x.iter().copied().sum::<Vec3>() / x.len() as f32;
+        (limit, x.iter().map(|x| (*x - middle).length()).sum::<f32>() / x.len() as f32)
+    };
+    for (amount, outside, method) in [(40.0, 0.0, Method::Symplectic), (2000.0, 9000.0, Method::Verlet)] {
+        let (limit, right) = filled(amount, outside, method, 0.4);
+        let (_, just) = filled(amount, outside, method, 0.9);
+        assert!((just / right - 1.0).abs() < 0.05, "{method}, steps of {limit} s: {just}, not {right}");
+        let (_, far) = filled(amount, outside, method, 3.0);
+        assert!((far / right - 1.0).abs() > 0.2, "{method}, steps of three times {limit} s: {far}");
+    }
+}
+
 #[test]
 fn what_is_too_large_is_taken_at_its_extreme() {
     let n = 320;

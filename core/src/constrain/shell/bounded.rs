@@ -1,6 +1,7 @@
 //! The momenta and the energy of the pieces of a shell that nothing holds, and the energy of those that walls press.
 
 use super::Bodies;
+use super::STEPS;
 use super::membrane::Cell;
 use super::pieces::{Piece, Roll};
 use super::plate::Shape;
@@ -36,31 +37,50 @@ struct Given {
 }
 
 impl Solver<'_> {
-    /// Moves all by their shifts; of pieces that nothing holds so that their momenta stay, and no farther than the energy that they have takes them.
-    pub(super) fn act_within(&mut self, bodies: &mut Bodies<'_>, roll: &mut Roll<'_>, work: &mut [u32]) {
+    /// Moves all by their shifts; of pieces that nothing holds so that their momenta stay, and no farther than the energy that they have takes them. Tells
+    /// whether that is all: where walls press pieces that gain energy, these need another step of Newton's method, unless this one is the last.
+    pub(super) fn act_within(
+        &mut self,
+        bodies: &mut Bodies<'_>,
+        roll: &mut Roll<'_>,
+        work: &mut [u32],
+        step: u32,
+    ) -> bool {
         let shape = Shape { triangles: self.triangles, cells: self.cells, hinges: self.hinges, bends: self.bends };
         let all = 0..self.vectors.rows.len();
         let is_fixed = |i: usize| self.vectors.rows[i] != NOBODY && self.vectors.weight[i] == 0.0;
         let is_hung = roll.is_one() && all.clone().any(is_fixed);
         let Some(pieces) = (if is_hung { None } else { roll.sorted(self.vectors.rows, &shape, work) }) else {
             roll.forget();
-            return self.act(bodies, all);
+            self.act(bodies, all);
+            return true;
         };
+        let mut is_done = true;
+        self.vectors.pressing.fill(0);
         for piece in pieces.each() {
             let members = || piece.members.iter().map(|&number| number as usize);
+            if step > 1 && members().any(|number| self.vectors.shift[number].is_nan()) {
+                continue;
+            }
             let is_laden = piece.rows.iter().any(|&row| bodies.load(row as usize) > 0.0);
             if self.is_free(members()) {
                 self.keep_momenta(bodies, &piece, is_laden);
                 self.act_freely(bodies, &piece, roll.budget(&piece));
             } else {
                 roll.budget(&piece).forget();
-                if piece.triangles.is_empty() || is_laden || !self.leans(members()) {
-                    self.act(bodies, members());
-                } else {
-                    self.act_on_walls(bodies, &piece);
+                let is_bounded = !piece.triangles.is_empty() && !is_laden && self.leans(members());
+                self.act(bodies, members());
+                if let Some((most, given)) = if is_bounded { self.gains(bodies, &piece) } else { None } {
+                    if step == STEPS {
+                        self.hold_short(bodies, &piece, most, &given);
+                    } else {
+                        members().for_each(|number| self.vectors.needs_more(number));
+                        is_done = false;
+                    }
                 }
             }
         }
+        is_done
     }
 
     /// Tells whether none of them is fixed, and whatever presses them stands still.
@@ -134,21 +154,20 @@ impl Solver<'_> {
         budget.keep(now, most);
     }
 
-    /// Moves a piece that walls press which stand still: they give it no energy, so what is solved leaves it no more of motion and strain than there was as
-    /// the sub-step began, and what forces have done on its way. A solution along the directions of the beginning makes more of triangles that are pressed
-    /// far. Bending is asked for only where what is in the plane of triangles, which costs little to tell, comes to too much.
-    fn act_on_walls(&mut self, bodies: &mut Bodies<'_>, piece: &Piece<'_>) {
-        self.act(bodies, piece.members.iter().map(|&number| number as usize));
+    /// Tells whether a piece has gained that walls press which stand still: they give it no energy, so what is solved leaves it no more of motion and strain
+    /// than there was as the sub-step began, and what forces have done on its way. A solution along the directions of the beginning makes more of triangles
+    /// that are pressed far. Bending is asked for only where what is in the plane of triangles, which costs little to tell, comes to too much. Tells how
+    /// much it may have \[J\], and what it is given.
+    fn gains(&mut self, bodies: &Bodies<'_>, piece: &Piece<'_>) -> Option<(f32, Given)> {
         let given = self.given(bodies, piece);
         let [strained, now] = self.stored(piece).stretched_at([bodies.before[0], bodies.position]);
         let now = self.moving(bodies, piece) + now;
-        if now > (given.moved + strained) * (1.0 + EVEN) + given.work + given.unsure {
-            let begun = given.moved + self.stored(piece).within(bodies.before[0]);
-            let most = begun + given.unsure + self.rounding(bodies, piece);
-            if self.seen(bodies, piece) > most + given.work + EVEN * begun {
-                self.hold_short(bodies, piece, most, &given);
-            }
+        if !(now > (given.moved + strained) * (1.0 + EVEN) + given.work + given.unsure) {
+            return None;
         }
+        let begun = given.moved + self.stored(piece).within(bodies.before[0]);
+        let most = begun + given.unsure + self.rounding(bodies, piece);
+        (self.seen(bodies, piece) > most + given.work + EVEN * begun).then_some((most, given))
     }
 
     /// Lets a piece go only as much of its way, but for how all together go along the walls, as takes no more energy than `most` \[J\] and what it is given

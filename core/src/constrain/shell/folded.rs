@@ -100,7 +100,9 @@ impl Kernel for Sum<'_, '_> {
         let bending = like.all(*bending);
         let (share, zero) = (like.all(SHARE - 1.0), like.all(0.0));
         for (strip, whole) in whole.iter().enumerate() {
-            let less = eight_of(like, plate.own, LANES * strip) * share * bending;
+            // What does not move has nothing that could be less.
+            let moves = eight_of(like, mass.as_flattened(), LANES * strip).simd_gt(zero);
+            let less = (eight_of(like, plate.own, LANES * strip) * share * bending) & moves;
             let [xx, xy, xz, yy, yz, zz] = whole.map(
                 #[inline(always)]
                 |lanes| like.of(lanes),

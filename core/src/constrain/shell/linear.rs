@@ -35,6 +35,25 @@ impl Solver<'_> {
         self.vectors.shift.fill(Vec3::ZERO);
     }
 
+    /// Takes forces anew where all have been moved who need another step of Newton's method, and walls as pressing none of these yet. The shift of whoever is
+    /// done is no number.
+    pub(super) fn go_on_from(&mut self, bodies: &Bodies<'_>) {
+        let Columns { weight, r, met, pressing, .. } = &mut self.vectors;
+        for (i, r) in r.iter_mut().enumerate() {
+            *r = Vec3::ZERO;
+            if pressing[i] == 1 && weight[i] > 0.0 {
+                let braked = self.walls.get_mut(i).map_or(Vec3::ZERO, |wall| wall.begin_again(bodies));
+                *r = -met[i] / weight[i] - braked;
+            }
+        }
+        self.linearise(bodies);
+        let Columns { r, shift, pressing, .. } = &mut self.vectors;
+        for ((r, shift), &needs) in r.iter_mut().zip(&mut **shift).zip(&**pressing) {
+            (*r, *shift) = if needs == 1 { (*r, Vec3::ZERO) } else { (Vec3::ZERO, Vec3::NAN) };
+        }
+        self.list_walls();
+    }
+
     /// Takes forces anew where all have been moved, along the directions of the beginning: what is left to ask for, and no shift. What they have been moved
     /// by is put where they went last.
     pub(super) fn ask_again(&mut self, bodies: &Bodies<'_>) {

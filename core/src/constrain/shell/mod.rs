@@ -132,6 +132,8 @@ pub struct Shell<P, T, H> {
 /// The words that it keeps of each triangle and each fold, and works with; and with each particle.
 const KEPT: [usize; 2] = [size_of::<Cell>() / 4, size_of::<RestFold>() / 4];
 const WORK: [usize; 3] = [size_of::<Strain>() / 4, size_of::<Fold>() / 4, 18];
+/// Steps of Newton's method at the most, where the first gains energy on walls.
+const STEPS: u32 = 4;
 
 impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     /// The numbers of its particles, triangles and hinges.
@@ -313,13 +315,10 @@ where
         let strains = structs(take(&mut rest, triangles.saturating_mul(WORK[0])));
         let folds = structs(take(&mut rest, hinges.saturating_mul(WORK[1])));
         let vectors = take(&mut rest, particles.saturating_mul(WORK[2]));
-        let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
         let vectors = solver::Vectors::of(bodies, self.particles.as_ref(), vectors);
         let mut roll = Roll::of(roll, particles);
         roll.update(vectors.rows, &self.shape(cells, bends));
         roll.catch_up(bodies, &vectors, rest);
-        let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
-        bodies.report.caps.graphs += u64::from(mesh::asked(self.counts()) && levels.is_empty());
         let walls = walls::of(share.step, particles);
         walls::gather(walls, self.particles.as_ref(), bodies);
         let mut solver = Solver {
@@ -332,7 +331,7 @@ where
             bends,
             folds,
             vectors,
-            thin: !levels.is_empty() && levels.finest.plate.is_thin(&self.params) && self.params.bending > 0.0,
+            thin: false,
             walls,
             last,
             left,
@@ -342,11 +341,22 @@ where
         });
         solver.list_walls();
         solver.meet(bodies);
-        solver.linearise(bodies);
-        solver.assemble(&mut levels);
-        solver.solve(bodies, &mut levels);
-        solver.tighten(bodies);
-        solver.act_within(bodies, &mut roll, rest);
+        for step in 1..=STEPS {
+            let (links, plate) = (Links::of(&room, triangles, links), Plate::of(&room, plate));
+            let mut levels = Levels::of(Graph::all(graphs), links, plate, rest);
+            bodies.report.caps.graphs += u64::from(step == 1 && mesh::asked(self.counts()) && levels.is_empty());
+            solver.thin = !levels.is_empty() && levels.finest.plate.is_thin(&self.params) && self.params.bending > 0.0;
+            match step {
+                1 => solver.linearise(bodies),
+                _ => solver.go_on_from(bodies),
+            }
+            solver.assemble(&mut levels);
+            solver.solve(bodies, &mut levels, step == 1);
+            solver.tighten(bodies);
+            if solver.act_within(bodies, &mut roll, rest, step) {
+                break;
+            }
+        }
         solver.each_laden(bodies, |bodies, row| {
             bodies.put_down(row);
         });

@@ -48,8 +48,8 @@ pub(super) struct Vectors<'m> {
     pub(super) q: &'m mut [Vec3],
     /// How far walls have moved them before anything is solved \[m\].
     pub(super) met: &'m mut [Vec3],
-    /// Who is pressed by a wall, and how many that are.
-    pressing: &'m mut [u32],
+    /// Who is pressed by a wall, and how many that are; between two steps of Newton's method, 1 for each that needs another.
+    pub(super) pressing: &'m mut [u32],
     pressed: usize,
 }
 
@@ -86,6 +86,13 @@ impl<'m> Vectors<'m> {
     pub(super) fn stamps(&mut self) -> &mut [u32] {
         let count = self.rows.len();
         &mut bytemuck::cast_slice_mut(self.q)[..count]
+    }
+
+    /// Counts how somebody has been moved as if walls had moved him: another step of Newton's method goes on from there.
+    pub(super) fn needs_more(&mut self, number: usize) {
+        let shift = self.shift[number];
+        self.met[number] += if shift.is_finite() { shift } else { Vec3::ZERO };
+        self.pressing[number] = 1;
     }
 
     /// Who is pressed by a wall.
@@ -217,7 +224,7 @@ impl Solver<'_> {
     }
 
     /// Solves it, and that anew for as long as other walls press than before.
-    pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>, levels: &mut Levels<'_>) {
+    pub(super) fn solve(&mut self, bodies: &mut Bodies<'_>, levels: &mut Levels<'_>, is_first: bool) {
         let mut enough = [0.0; 2];
         let mut roughly = self.walls.iter().any(Wall::is_near);
         for pass in 0..PASSES {
@@ -228,7 +235,7 @@ impl Solver<'_> {
                 add_scaled(shift, 1.0, p);
                 add_scaled(r, -1.0, q);
             }
-            let energy = if pass == 0 { self.go_on(levels) } else { 0.0 };
+            let energy = if pass == 0 && is_first { self.go_on(levels) } else { 0.0 };
             roughly &= pass < ROUGHLY;
             self.descend(levels, energy, &mut enough, roughly, bodies.report);
             if pass + 1 == PASSES {
@@ -242,12 +249,17 @@ impl Solver<'_> {
                 break;
             }
         }
-        if self.step.lag > MANY * self.step.h && self.vectors.pressed == 0 && !self.last.is_empty() {
+        if is_first && self.step.lag > MANY * self.step.h && self.vectors.pressed == 0 && !self.last.is_empty() {
             self.correct(bodies, levels, &mut enough);
         }
         for (last, &shift) in self.last.iter_mut().zip(&*self.vectors.shift) {
             // Which bits a NaN has depends on the machine, and these words are in the hash.
-            *last = if shift.is_finite() { shift } else { Vec3::ZERO };
+            *last = match (is_first, shift.is_finite()) {
+                (true, true) => shift,
+                (true, false) => Vec3::ZERO,
+                (false, true) => *last + shift,
+                (false, false) => *last,
+            };
         }
         if self.vectors.pressed == 0 {
             self.part(bodies);

@@ -166,6 +166,15 @@ impl Wall {
         if share > 1.0 - ALIKE * ALIKE { along * (missing / share) } else { Vec3::ZERO }
     }
 
+    /// Bears nothing yet of what is left; tells what it brakes by, where its particle has been moved \[kg m\].
+    pub(in crate::constrain) fn begin_again(&mut self, bodies: &Bodies<'_>) -> Vec3 {
+        if !self.presses() {
+            return Vec3::ZERO;
+        }
+        self.held = Vec3::ZERO;
+        if self.state == SLIDES { self.slid(bodies, Vec3::ZERO) * self.brake } else { Vec3::ZERO }
+    }
+
     /// How far its particle has gone along it since it touched it.
     fn slid(&self, bodies: &Bodies<'_>, shift: Vec3) -> Vec3 {
         aside(bodies.position[self.row as usize] + shift - self.stuck, self.normal)
