@@ -64,7 +64,7 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
                 {"sides": [0.2, 0.2, 0.2], "mass": 1e-18, "position": [0, 0.1, 0]},
                 {"sides": [0.2, 0.2, 0.2], "mass": 1e18, "position": [0, 0.3, 0]}]}"#
                 .into(),
-            "run.substeps of 4294967295 are enough",
+            "and through them at last; no number of sub-steps is enough, of which run.substeps may say 1000",
         ),
         (
             format!(

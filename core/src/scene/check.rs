@@ -4,6 +4,7 @@ use super::check_force::check_force;
 use super::check_shape::check_shape;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
 use super::references::{MAX_GROUPS, MAX_MATERIALS};
+use super::remarks::MOST_SUBSTEPS;
 use super::{Boxes, Cord, Fog, Light, Material, SceneError, SceneFile, Sky};
 use crate::constrain::ConstraintKind;
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
@@ -118,8 +119,8 @@ impl SceneFile {
             let message = format!("has to be from zero to below 2^31 s, not {:?} s", run.duration);
             return Err(SceneError::value("run.duration", message));
         }
-        if !(1..=1000).contains(&run.substeps) {
-            let message = format!("has to be from 1 to 1000, not {}", run.substeps);
+        if !(1..=MOST_SUBSTEPS).contains(&run.substeps) {
+            let message = format!("has to be from 1 to {MOST_SUBSTEPS}, not {}", run.substeps);
             return Err(SceneError::value("run.substeps", message));
         }
         if !(1..=10_000).contains(&run.max_bounces) {

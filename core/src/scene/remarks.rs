@@ -19,6 +19,9 @@ const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
 /// As many as are told: a large file may have one in every line.
 pub(super) const MOST: usize = 1000;
 
+/// Sub-steps that a step may have.
+pub(super) const MOST_SUBSTEPS: u32 = 1000;
+
 /// Balls may be so many times as heavy as others that bear them in the sub-steps that contacts by position usually take: two and three on top of
 /// each other of which the upper one weighs 40 times as much lie still, with 100 times in steps of 1/24 s they do not.
 const UNEVEN: f32 = 50.0;
@@ -130,8 +133,10 @@ impl SceneFile {
             let needed = (taken * sqrt(depth / room)) as u32;
             let needed = needed.saturating_add(1);
             format!(
-                "bodies of {} kg sink into those of {} kg that bear them, and through them at last; run.substeps of {needed} are enough",
-                heaviest.mass, lightest.mass
+                "bodies of {} kg sink into those of {} kg that bear them, and through them at last; {}",
+                heaviest.mass,
+                lightest.mass,
+                enough(needed)
             )
         };
         (depth > room && heaviest.mass > lightest.mass).then(sinks)
@@ -190,12 +195,12 @@ impl SceneFile {
         let taken = self.substeps();
         let mut sinks = [(body, 1.0, "what weighs"), (sheet, 1.0 / 32.0, "a sheet whose points weigh")].into_iter();
         sinks.find_map(|(load, share, what)| {
-            let enough = (taken..=1000).find(|&substeps| !(depth(load, substeps) > share * thickness));
+            let least = (taken..=MOST_SUBSTEPS).find(|&substeps| !(depth(load, substeps) > share * thickness));
             let says = || {
-                let helps = enough.map_or("it is far too much".into(), |n| format!("run.substeps of {n} are enough"));
+                let helps = least.map_or("it is far too much".into(), enough);
                 format!("{what} {load} kg sinks into it, whose points weigh {point} kg each, or falls through; {helps}")
             };
-            (enough != Some(taken)).then(says)
+            (least != Some(taken)).then(says)
         })
     }
 
@@ -225,7 +230,8 @@ impl SceneFile {
             let needed = (taken * sqrt(sqrt(excess))) as u32;
             let needed = needed.saturating_add(1);
             format!(
-                "it is so stiff that what it stretches by as it bends in a sub-step outweighs it: it hangs too far, or shakes; run.substeps of {needed} are enough"
+                "it is so stiff that what it stretches by as it bends in a sub-step outweighs it: it hangs too far, or shakes; {}",
+                enough(needed)
             )
         };
         (excess > 1.0 && excess < f32::INFINITY).then(shakes)
@@ -385,6 +391,14 @@ impl SceneFile {
             edge.iter().any(is_free)
         };
         strands.turning[end] != 0.0 && !strands.held[end] && strands.strands().all(is_loose)
+    }
+}
+
+/// What helps where a remark asks for so many sub-steps.
+pub(super) fn enough(needed: u32) -> String {
+    match needed {
+        ..=MOST_SUBSTEPS => format!("run.substeps of {needed} are enough"),
+        _ => format!("no number of sub-steps is enough, of which run.substeps may say {MOST_SUBSTEPS}"),
     }
 }
 

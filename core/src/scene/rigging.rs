@@ -1,5 +1,6 @@
 //! Bodies that hang from others, as a file declares them: how fast ropes turn them to and fro, and how far they let sheets sink.
 
+use super::remarks::enough;
 use super::{Body, Boxes, Cord, SceneFile};
 use crate::constrain::{root, unite};
 use crate::math::{length, max, sqrt};
@@ -54,7 +55,8 @@ impl SceneFile {
         let needed = ((self.run.dt as f32 * turn / TURNS) as u32).saturating_add(1);
         let says = || {
             format!(
-                "it pulls at a body that another rope pulls at too: they turn it to and fro by {turn:.0} rad/s, and throw it about in few sub-steps; run.substeps of {needed} are enough"
+                "it pulls at a body that another rope pulls at too: they turn it to and fro by {turn:.0} rad/s, and throw it about in few sub-steps; {}",
+                enough(needed)
             )
         };
         (needed > self.substeps()).then(|| (number, says()))
@@ -88,7 +90,8 @@ impl SceneFile {
         let is_told = times < f32::INFINITY && needed > self.substeps();
         is_told.then(|| {
             format!(
-                "it bears {load} kg at a point of a sheet that weighs {point} kg, and gives way far more than both do; run.substeps of {needed} are enough for a hundredth of the sheet"
+                "it bears {load} kg at a point of a sheet that weighs {point} kg, and gives way far more than both do; {} for a hundredth of the sheet",
+                enough(needed)
             )
         })
     }
