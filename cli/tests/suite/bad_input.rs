@@ -249,6 +249,10 @@ fn springs_fabrics_and_forces_that_are_wrong() {
         (cloth(&two, "", "1"), "a.json:cloths[0].springs: has to name structural, shear or bend springs"),
         (cloth(&two, r#""bend": {"ks": -2}"#, "1"), "a.json:cloths[0].springs.bend.ks: has to be zero or more, not -2"),
         (cloth(&two, soft, "-1"), "a.json:cloths[0].mass: has to be above zero, not -1"),
+        (
+            cloth(&two, soft, "0"),
+            "a.json:cloths[0].mass: is missing, or zero: say it, in kg, or the cloth's density, in kg/m²",
+        ),
         (cloth(&two, soft, "1e-38"), "a.json:cloths[0].mass: leaves 1.1"),
         (cloth(&two, soft, r#"1, "gas": {"amount": 1}"#), "a.json:cloths[0].gas: a sheet has no inside"),
         (cloth(&two, soft, r#"1, "fixed": [9]"#), "a.json:cloths[0].fixed: particle 9 is out of range; there are 9,"),

@@ -237,6 +237,10 @@ impl Cloth {
                 let message = "is missing: say it, in kg/m³, or the cloth's density, in kg/m², or its mass";
                 Err(SceneError::value(format!("{at}.isotropic.density"), message))
             }
+            None if self.mass == 0.0 => {
+                let message = "is missing, or zero: say it, in kg, or the cloth's density, in kg/m²";
+                Err(SceneError::value(format!("{at}.mass"), message))
+            }
             None => above_zero(&format!("{at}.mass"), self.mass),
         }
     }
