@@ -799,6 +799,36 @@ fn cloths_are_triangles_for_as_long_as_they_hold() {
 }
 
 /// Bonds of constraints are told as edges and faces, of those who live; each once, whoever else binds it.
+/// Whoever reads a run finds the same arrays in all records, though all springs have broken.
+#[test]
+fn records_have_edges_and_faces_though_none_are_left() {
+    // The sheet is held by two opposite corners, so that all its four sides stretch.
+    let scene = r#"{"run": {"dt": 0.05}, "particles": [{}, {"position": [1, 0, 0], "velocity": [9, 0, 0]}],
+        "springs": [{"ends": [0, 1], "rest_length": 1, "ks": 1, "breaks_at": 1.5}],
+        "cloths": [{"form": {"sheet": {"corner": [0, 0, 9], "sides": [[1, 0, 0], [0, 1, 0]], "cells": [1, 1]}}, "mass": 1,
+            "fixed": [0, 3], "breaks_at": 1.05, "springs": {"structural": {"ks": 3}}}],
+        "forces": [{"gravity": {"acceleration": [0, 0, -50]}}]}"#;
+    let folder = Folder::with("a.json", scene);
+    folder.run("run a.json --steps 4 --out a.npz --out a.npy --out a.jsonl --line record").fine();
+    let told = folder.read("a.jsonl");
+    let objects: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    assert_eq!(objects[0]["faces"].as_array().map(Vec::len), Some(2));
+    assert_eq!(objects[0]["edges"], json!([[0, 1]]));
+    assert_eq!((&objects[4]["faces"], &objects[4]["edges"]), (&json!([]), &json!([])));
+    let mut archive = zip::ZipArchive::new(File::open(folder.path("a.npz")).expect("it is there")).expect("an archive");
+    for (name, columns) in [("faces", 3), ("edges", 2)] {
+        let mut bytes = Vec::new();
+        archive.by_name(&format!("4/{name}.npy")).expect("an array").read_to_end(&mut bytes).expect("its bytes");
+        assert_eq!(array(&bytes), (vec![0, columns], vec![]), "{name}");
+        let bytes = fs::read(folder.path(&format!("a_000004_{name}.npy"))).expect("it is there");
+        assert_eq!(array(&bytes), (vec![0, columns], vec![]), "{name}");
+    }
+    // Where there is nothing of the kind there are no such arrays.
+    folder.write("b.json", r#"{"particles": [{}]}"#);
+    folder.run("run b.json --steps 1 --out b.jsonl --line record").fine();
+    assert!(!folder.read("b.jsonl").contains("edges") && !folder.read("b.jsonl").contains("faces"));
+}
+
 #[test]
 fn what_constraints_bind_is_edges_and_faces() {
     let particle = |i: u32, rest: &str| format!(r#"{{"position": [{}, {}, {}]{rest}}}"#, i % 4, i / 4, (i * i) % 3);

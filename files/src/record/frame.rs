@@ -27,10 +27,19 @@ pub struct Frame {
     pub(super) faces: Vec<[u32; 3]>,
     /// Springs that hold and are in no triangle, by rows.
     pub(super) edges: Vec<[u32; 2]>,
+    /// Whether the scene has such triangles and springs, though none of them may be left.
+    pub(super) kinds: Kinds,
     /// The surfaces of rigid bodies.
     pub(super) surfaces: Surfaces,
     /// The room whose opposite faces are one, if there is one.
     pub(super) room: Option<Room>,
+}
+
+/// What joins the particles of a scene, the same in every record.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kinds {
+    pub(super) faces: bool,
+    pub(super) edges: bool,
 }
 
 /// An attribute of all particles.
@@ -143,7 +152,7 @@ impl Frame {
         let now = [state.position, state.velocity];
         plan.solids.iter().for_each(|solid| solid.add(&state.springs, now, &place, &mut surfaces));
         let room = state.near.room().copied();
-        Self { step, time, len: order.len(), columns, colors, faces, edges, surfaces, room }
+        Self { step, time, len: order.len(), columns, colors, faces, edges, kinds: plan.kinds(), surfaces, room }
     }
 
     /// The columns of these names one after the other, all of them there and in single precision.

@@ -52,8 +52,8 @@ impl Writer for Npz {
 /// The arrays of a frame with their names.
 fn arrays(frame: &Frame) -> impl Iterator<Item = (&str, Array<'_>)> {
     let columns = frame.columns.iter().map(|column| (column.name.as_str(), Array::Column(&column.values)));
-    let faces = (!frame.faces.is_empty()).then_some(("faces", Array::Faces(&frame.faces)));
-    let edges = (!frame.edges.is_empty()).then_some(("edges", Array::Edges(&frame.edges)));
+    let faces = frame.kinds.faces.then_some(("faces", Array::Faces(&frame.faces)));
+    let edges = frame.kinds.edges.then_some(("edges", Array::Edges(&frame.edges)));
     columns.chain(faces).chain(edges)
 }
 

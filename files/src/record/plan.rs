@@ -1,5 +1,6 @@
 //! The columns that a recording holds of each particle, decided by the scene, so that they are the same in every record.
 
+use super::frame::Kinds;
 use super::solids::Solid;
 use crate::outcome::{Failure, Outcome};
 use pointmass::constrain::ConstraintKind;
@@ -67,6 +68,11 @@ impl Plan {
         plan.add_faces(file, model, scene, files)?;
         plan.add_bonds(&model.constraints.0);
         Ok(plan)
+    }
+
+    /// What joins particles.
+    pub(super) fn kinds(&self) -> Kinds {
+        Kinds { faces: !self.triangles.is_empty(), edges: !self.links.is_empty() || self.edges.contains(&true) }
     }
 
     /// Puts in the triangles of cloths, in place of their springs.

@@ -66,20 +66,20 @@ impl Serialize for Cells<'_> {
     }
 }
 
-/// A frame as an object: the names of columns with lists of their values, and triangles and edges where there are any.
+/// A frame as an object: the names of columns with lists of their values, and triangles and edges where the scene has any.
 struct Whole<'a>(&'a Frame);
 
 impl Serialize for Whole<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Frame { step, time, columns, faces, edges, .. } = self.0;
+        let Frame { step, time, columns, faces, edges, kinds, .. } = self.0;
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("step", step)?;
         map.serialize_entry("time", time)?;
         columns.iter().try_for_each(|column| map.serialize_entry(&column.name, &column.values))?;
-        if !faces.is_empty() {
+        if kinds.faces {
             map.serialize_entry("faces", faces)?;
         }
-        if !edges.is_empty() {
+        if kinds.edges {
             map.serialize_entry("edges", edges)?;
         }
         map.end()
