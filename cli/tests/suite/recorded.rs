@@ -373,7 +373,7 @@ fn xyz(text: &str) -> Vec<Record> {
 }
 
 /// The arrays of a file of VTK's, by the element they are in and their names.
-fn vtk(text: &str) -> BTreeMap<(String, String), Vec<f64>> {
+pub(crate) fn vtk(text: &str) -> BTreeMap<(String, String), Vec<f64>> {
     let mut reader = Reader::from_str(text);
     let (mut path, mut arrays, mut kind) = (Vec::new(), BTreeMap::new(), (String::new(), String::new()));
     loop {
@@ -427,7 +427,7 @@ pub(crate) fn vtp(text: &str) -> Record {
         let cells =
             |n: usize| numbers.iter().map(|x| *x as u64).collect::<Vec<_>>().chunks(n).map(<[u64]>::to_vec).collect();
         match (at.as_str(), name.as_str()) {
-            ("FieldData", _) => record.time = numbers[0],
+            ("FieldData", "TimeValue") => record.time = numbers[0],
             ("Points", _) => parts(&["x", "y", "z"], &numbers, &mut record),
             ("PointData", "velocity") => parts(&["vx", "vy", "vz"], &numbers, &mut record),
             ("PointData", "color") => parts(&["red", "green", "blue", "alpha"], &numbers, &mut record),
@@ -740,6 +740,7 @@ fn a_record_without_anybody_is_a_whole_file_too() {
     assert_eq!(npz(&folder, "a.npz").len(), 2);
     assert_eq!(glb(&fs::read(folder.path("a.glb")).expect("it is there")).len(), 2);
     assert!(vtp(&folder.read("a_000001.vtp")).columns["x"].is_empty());
+    assert_eq!(vtk(&folder.read("a_000001.vtp"))[&("FieldData".into(), "particles".into())], [0.0]);
     assert!(npy(&folder, "a_000001").columns["mass"].is_empty());
 }
 
@@ -798,7 +799,6 @@ fn cloths_are_triangles_for_as_long_as_they_hold() {
     assert_eq!((record.faces, record.edges), (vec![vec![0, 1, 2], vec![2, 1, 3]], vec![]));
 }
 
-/// Bonds of constraints are told as edges and faces, of those who live; each once, whoever else binds it.
 /// Whoever reads a run finds the same arrays in all records, though all springs have broken.
 #[test]
 fn records_have_edges_and_faces_though_none_are_left() {
@@ -829,6 +829,7 @@ fn records_have_edges_and_faces_though_none_are_left() {
     assert!(!folder.read("b.jsonl").contains("edges") && !folder.read("b.jsonl").contains("faces"));
 }
 
+/// Bonds of constraints are told as edges and faces, of those who live; each once, whoever else binds it.
 #[test]
 fn what_constraints_bind_is_edges_and_faces() {
     let particle = |i: u32, rest: &str| format!(r#"{{"position": [{}, {}, {}]{rest}}}"#, i % 4, i / 4, (i * i) % 3);

@@ -1,17 +1,20 @@
 //! The surfaces of rigid bodies in recordings: closed, as large as the bodies, where these are, and behind all particles.
 
-use crate::recorded::{Record, glb, obj, ply, vtp};
+use crate::recorded::{Record, glb, obj, ply, vtk, vtp};
 use crate::tool::Folder;
 use serde_json::json;
 use std::fs;
 
 const STEPS: usize = 12;
 
+/// What all of the scene weighs \[kg\]: a ball, a sheet, four bodies.
+const MASS: f64 = 1.0 + 1.0 + 4.0 * 0.7;
+
 /// Two boxes and two dice that spin through the air, a sheet and a ball.
 fn scene() -> String {
     let body = |form: &str, x: f64, sides: [f64; 3]| {
         json!({"form": form, "sides": sides, "mass": 0.7, "position": [x, 2.0, -x], "turn": [0.3, x, -0.2],
-            "velocity": [0.5, 1.0, x], "spin": [3.0, -2.0, 1.0 + x], "load": [0.2, 0.0, -0.1], "colors": [[10, 20, 30, 255]]})
+            "velocity": [0.5, 1.0, x], "spin": [3.0, -2.0, 1.0 + x], "load": [0.2, 0.0, -0.1], "drag": 0.001, "colors": [[10, 20, 30, 255]]})
     };
     let mut boxes = vec![
         body("box", 0.0, [0.4, 0.2, 0.3]),
@@ -23,7 +26,7 @@ fn scene() -> String {
     let sheet = json!({"corner": [0, 4, 0], "sides": [[1, 0, 0], [0, 0, 1]], "cells": [2, 1]});
     json!({
         "run": {"dt": 0.05, "substeps": 10, "integrator": "symplectic"},
-        "forces": [{"gravity": {"acceleration": [0, -9.8, 0]}}],
+        "forces": [{"gravity": {"acceleration": [0, -9.8, 0]}}, {"drag": {}}],
         "particles": [{"position": [5, 5, 5]}],
         "cloths": [{"form": {"sheet": sheet}, "mass": 1, "springs": {"structural": {"ks": 5}}}],
         "boxes": boxes
@@ -77,10 +80,16 @@ fn holds(what: &str, record: &Record) {
         );
         if let Some(ids) = record.columns.get("id") {
             assert!(ids[corner..corner + corners].iter().all(|&id| id == ids[particle]), "{what}");
+            // What they sum up to is that of the particles.
+            for name in ["mass", "drag"] {
+                assert!(record.columns[name][corner..corner + corners].iter().all(|&x| x == 0.0), "{what}: {name}");
+            }
         }
         (corner, face, particle) = (corner + corners, face + faces, particle + particles);
     }
     assert_eq!((x.len(), record.faces.len()), (corner, face), "{what}");
+    let mass: f64 = record.columns.get("mass").map_or(MASS, |masses| masses.iter().sum());
+    assert!((mass / MASS - 1.0).abs() < 1e-6, "{what}: {mass} kg");
 }
 
 #[test]
@@ -95,7 +104,9 @@ fn rigid_bodies_are_recorded_with_their_surfaces() {
         holds("glb", animated);
         let ply = ply(&folder, &format!("a_{i:06}.ply"));
         holds("ply", &ply);
-        holds("vtp", &vtp(&folder.read(&format!("a_{i:06}.vtp"))));
+        let text = folder.read(&format!("a_{i:06}.vtp"));
+        holds("vtp", &vtp(&text));
+        assert_eq!(vtk(&text)[&("FieldData".into(), "particles".into())], [39.0]);
         let text = folder.read(&format!("a_{i:06}.obj"));
         holds("obj", &obj(&text));
         assert!(text.contains("# 39 particles, then corners of bodies"));

@@ -161,12 +161,9 @@ fn light(color: [u8; 3], alpha: u8) -> [f32; 4] {
 impl Writer for Gltf {
     fn record(&mut self, frame: &Frame) -> io::Result<()> {
         let frame = &*frame.with_surfaces();
-        let mut node =
-            json!({"name": format!("step {}", frame.step), "extras": {"time": frame.time, "step": frame.step}});
-        if let Some(count) = frame.particles() {
-            // Vertices behind these are corners of bodies.
-            node["extras"]["particles"] = count.into();
-        }
+        // Vertices behind the particles are corners of bodies.
+        let extras = json!({"time": frame.time, "step": frame.step, "particles": frame.particles()});
+        let mut node = json!({"name": format!("step {}", frame.step), "extras": extras});
         if frame.len > 0 {
             let mesh = self.mesh(frame);
             node["mesh"] = self.meshes.len().into();

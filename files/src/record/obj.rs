@@ -11,8 +11,8 @@ impl Writer for Obj {
         let frame = &*frame.with_surfaces();
         let out = &mut self.0;
         writeln!(out, "# time {} step {}", frame.time, frame.step)?;
-        if let Some(count) = frame.particles() {
-            writeln!(out, "# {count} particles, then corners of bodies")?;
+        if let Some(remark) = frame.remark() {
+            writeln!(out, "# {remark}")?;
         }
         for ([x, y, z], color) in frame.places().zip(&frame.colors) {
             let [red, green, blue, _] = color.map(|channel| f32::from(channel) / 255.0);

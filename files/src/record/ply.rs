@@ -44,7 +44,7 @@ fn header(frame: &Frame, first: &[&Column], rest: &[&Column]) -> Header {
     let vertex = first.iter().map(column).chain(color).chain(rest.iter().map(column));
     let mut header = Header { encoding: Encoding::BinaryLittleEndian, ..Header::new() };
     header.comments.push(format!("time {} step {}", frame.time, frame.step));
-    header.comments.extend(frame.particles().map(|count| format!("{count} particles, then corners of bodies")));
+    header.comments.extend(frame.remark());
     header.elements.add(element("vertex", frame.len, vertex));
     if !frame.faces.is_empty() {
         let corners = PropertyType::List(ScalarType::UChar, ScalarType::Int);

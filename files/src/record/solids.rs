@@ -103,8 +103,8 @@ impl Solid {
 }
 
 impl Frame {
-    /// The particles with the corners of bodies behind them, which have what the first particle of their body has, but for place and velocity; and
-    /// all faces.
+    /// The particles with the corners of bodies behind them, which have what the first particle of their body has, but for place and velocity, and
+    /// but for what sums up over a body, which its particles have; and all faces.
     pub(super) fn with_surfaces(&self) -> Cow<'_, Self> {
         let Surfaces { corners, triangles, .. } = &self.surfaces;
         if corners.is_empty() {
@@ -119,19 +119,29 @@ impl Frame {
         Cow::Owned(frame)
     }
 
-    /// What is said of a frame with corners: how many of its vertices are particles; nothing, where all are.
-    pub(super) fn particles(&self) -> Option<usize> {
-        let corners = self.surfaces.corners.len();
-        (corners > 0).then(|| self.len - corners)
+    /// How many vertices of a frame with corners are particles.
+    pub(super) fn particles(&self) -> usize {
+        self.len - self.surfaces.corners.len()
+    }
+
+    /// The remark that there are others; nothing, where all are particles.
+    pub(super) fn remark(&self) -> Option<String> {
+        let count = self.particles();
+        (count < self.len).then(|| format!("{count} particles, then corners of bodies"))
     }
 }
 
 /// Puts the values of corners behind those of particles.
 fn extend(column: &mut Column, corners: &[([Vec3; 2], u32)]) {
     const AXES: [&str; 6] = ["x", "y", "z", "vx", "vy", "vz"];
+    const SUMS: [&str; 3] = ["mass", "drag", "charge"];
     let axis = AXES.iter().position(|name| *name == column.name);
     if let (Some(axis), Values::Single(values)) = (axis, &mut column.values) {
         values.extend(corners.iter().map(|(corner, _)| corner[axis / 3][axis % 3]));
+        return;
+    }
+    if let (true, Values::Single(values)) = (SUMS.contains(&column.name.as_str()), &mut column.values) {
+        values.resize(values.len() + corners.len(), 0.0);
         return;
     }
     let rows = corners.iter().map(|&(_, row)| row as usize);

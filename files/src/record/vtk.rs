@@ -34,8 +34,7 @@ impl Writer for Vtp {
                     let time = frame.time.to_le_bytes().to_vec();
                     tuples(xml, &Array { name: "TimeValue", kind: "Float64", components: 1, bytes: time }, Some(1))?;
                     // Points behind these are corners of bodies.
-                    let Some(count) = frame.particles() else { return Ok(()) };
-                    let bytes = (count as i64).to_le_bytes().to_vec();
+                    let bytes = (frame.particles() as i64).to_le_bytes().to_vec();
                     tuples(xml, &Array { name: "particles", kind: "Int64", components: 1, bytes }, Some(1))
                 })?;
                 piece(xml, frame)
