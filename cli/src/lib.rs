@@ -82,7 +82,7 @@ enum Command {
 /// Runs the command: parses its arguments, does what they say, and turns the outcome into an exit code.
 #[must_use]
 pub fn main(peers: compare::Peers) -> ExitCode {
-    pointmass_files::temporary::clean_up_when_interrupted();
+    pointmass_files::temporary::clean_up_when_interrupted(tell_of_interrupt);
     let args = Args::try_parse().unwrap_or_else(|error| refuse(&error));
     let outcome = match &args.command {
         Command::Run(args) => run::run(args),
@@ -100,6 +100,16 @@ pub fn main(peers: compare::Peers) -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Says what becomes of files in the making.
+fn tell_of_interrupt() {
+    use std::io::IsTerminal;
+    if std::io::stderr().is_terminal() {
+        // A bar may stand there.
+        eprintln!();
+    }
+    tell("warning", "interrupted: recordings and pictures are dropped, since they are not complete");
 }
 
 /// Says what is wrong with the arguments, or helps, and ends the program. What is quoted may hold codes that terminals

@@ -56,9 +56,9 @@ fn remove(path: &Path) {
     };
 }
 
-/// From now on, an interrupt removes what is temporary, and ends the program with 128 plus the signal's number.
+/// From now on, an interrupt removes what is temporary, lets `tell` say so, if there was any, and ends the program with 128 plus the signal's number.
 #[cfg(unix)]
-pub fn clean_up_when_interrupted() {
+pub fn clean_up_when_interrupted(tell: impl FnOnce() + Send + 'static) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     // What `nohup` starts outlives its terminal.
     let wanted = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| signal != SIGHUP || !is_ignored(SIGHUP));
@@ -70,6 +70,9 @@ pub fn clean_up_when_interrupted() {
             // What is in a folder goes before it.
             let (ours, folders): (Vec<_>, Vec<_>) = all.iter().partition(|path| is_ours(path));
             ours.into_iter().chain(folders).for_each(|path| remove(path));
+            if !all.is_empty() {
+                in_passing(tell);
+            }
             std::process::exit(128 + signal);
         }
     };
@@ -78,7 +81,20 @@ pub fn clean_up_when_interrupted() {
 
 /// Without signals there is nothing to wait for.
 #[cfg(not(unix))]
-pub fn clean_up_when_interrupted() {}
+pub fn clean_up_when_interrupted(_: impl FnOnce() + Send + 'static) {}
+
+/// Lets somebody say something, but waits for him no longer than a second: who is to hear it may have stopped reading.
+#[cfg(unix)]
+fn in_passing(tell: impl FnOnce() + Send + 'static) {
+    let (done, told) = std::sync::mpsc::channel();
+    let say = move || {
+        tell();
+        let _ = done.send(());
+    };
+    if std::thread::Builder::new().spawn(say).is_ok() {
+        let _ = told.recv_timeout(std::time::Duration::from_secs(1));
+    }
+}
 
 /// Whether the program was started with a signal turned off; only Linux tells without unsafe code.
 #[cfg(unix)]

@@ -173,7 +173,7 @@ fn interrupts_leave_nothing_behind() {
             // Where somebody has started all of this with nohup, hang-ups would be ignored, as they should.
             let mut program = Command::new("env");
             program.args(["--default-signal=HUP", PROGRAM]).args(command.split(' ')).current_dir(folder.path(""));
-            let mut child = program.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("it starts");
+            let child = program.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
             let begun = Instant::now();
             // Once there are files it can be interrupted.
             while folder.path("").read_dir().map_or(0, Iterator::count) < least {
@@ -183,8 +183,11 @@ fn interrupts_leave_nothing_behind() {
             std::thread::sleep(Duration::from_millis(20));
             let kill = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
             assert!(kill.is_ok_and(|status| status.success()));
-            let status = child.wait().expect("it ends");
-            assert_eq!((status.code(), folder.names()), (Some(code), vec!["a.scn".to_string()]), "{command}");
+            let ended = child.wait_with_output().expect("it ends");
+            assert_eq!((ended.status.code(), folder.names()), (Some(code), vec!["a.scn".to_string()]), "{command}");
+            let said = String::from_utf8_lossy(&ended.stderr);
+            let dropped = "warning: interrupted: recordings and pictures are dropped, since they are not complete";
+            assert_eq!(said.lines().filter(|line| *line == dropped).count(), 1, "{command}: {said}");
         }
     }
 }
