@@ -57,8 +57,8 @@ test("a scene is an object or a text", () => {
   for (const empty of ["", " \n", "\ufeff"]) refuses(() => new World(empty), /^the text is empty/);
   assert.equal(hash(Object.assign(Object.create(null), scene)), expected);
   assert.equal(hash(new (class Mine { toJSON() { return scene; } })()), expected);
-  refuses(() => new World(circular), /the scene has no JSON/);
-  refuses(() => new World({ run: { seed: 7n } }), /the scene has no JSON/);
+  refuses(() => new World(circular), /^scene:self: has no JSON: it is part of itself$/);
+  refuses(() => new World({ run: { seed: 7n } }), /^scene:run\.seed: has no JSON: it is a bigint: write it as a number$/);
   for (const other of [undefined, null, 7, [], "particle 0 0 0"]) {
     refuses(() => new World({ toJSON: () => other }), /the scene has no JSON/);
   }
@@ -86,6 +86,52 @@ test("errors in objects have paths", () => {
     [{ springs: [{ ends: [0, 1], rest_length: 1, ks: 1, kd: 0, breaks_at: NaN }], particles: [{}, {}] }, /^scene:springs\[0\]\.breaks_at: invalid value: NaN/],
   ]) assert.throws(() => new World(other), { message });
   refuses(() => new World('{"particles": 7}'), /^scene:1:\d+: /);
+});
+
+test("what JSON cannot say is refused by its path", () => {
+  class Empty {}
+  class Mine { mass = 2; }
+  const detached = new Float32Array([1, 2, 3]);
+  structuredClone(detached, { transfer: [detached.buffer] });
+  const loop = [{}];
+  loop[0].inner = { loop };
+  const deep = JSON.parse('{"a":'.repeat(200) + "1" + "}".repeat(200));
+  const kinds = [
+    [Promise.resolve({}), "it is a Promise: await it"], [new Map([["mass", 2]]), "it is a Map"], [new Set(), "it is a Set"], [new Empty(), "it is an Empty"],
+    [() => 7, "it is a function"], [Symbol("mass"), "it is a symbol"], [7n, "it is a bigint: write it as a number"], [/x/, "it is a RegExp"],
+    [new ArrayBuffer(8), "it is an ArrayBuffer"], [new DataView(new ArrayBuffer(8)), "it is a DataView"],
+    [detached, "it is a Float32Array that cannot be read, as one that has been transferred"],
+  ];
+  const ball = new World({});
+  for (const [value, why] of kinds) {
+    for (const [scene, place] of [
+      [{ particles: [{}, value] }, "scene:particles[1]"],
+      [{ forces: [], particles: [{ position: [1, 2, 3], velocity: {} }, { color: [[], {}], mass: value }] }, "scene:particles[1].mass"],
+      [{ "a b": { c: [[], [[1], value]] } }, "scene:a b.c[1][1]"],
+      [{ contacts: value }, "scene:contacts"],
+    ]) {
+      refuses(() => new World(scene), /^scene/);
+      assert.throws(() => new World(scene), { message: `${place}: has no JSON: ${why}` });
+    }
+    assert.throws(() => ball.spawn({ position: [0, 0, 0], mass: value }), { message: `particle.mass: has no JSON: ${why}` });
+    assert.throws(() => ball.spawn({ position: [0, value, 0] }), { message: `particle.position[1]: has no JSON: ${why}` });
+  }
+  assert.equal(ball.count, 0);
+  for (const [scene, message] of [
+    [{ particles: loop }, "scene:particles[0].inner.loop: has no JSON: it is part of itself"],
+    [{ particles: [{ position: new BigInt64Array(3) }] }, "scene:particles[0].position[0]: has no JSON: it is a bigint: write it as a number"],
+    [{ about: deep }, /^scene:about\.a\..*: has no JSON: it is 128 objects deep$/],
+    [{ ["x".repeat(1e6)]: { y: 1n } }, `scene:${"x".repeat(60)}….y: has no JSON: it is a bigint: write it as a number`],
+    [{ toJSON: () => new Map() }, "the scene has no JSON: it is a Map"],
+    [{ particles: [new (class { mass = 1; toJSON() { return new Set(); } })()] }, "scene:particles[0]: has no JSON: it is a Set"],
+  ]) {
+    assert.throws(() => new World(scene), { message });
+  }
+  // What is there twice is not within itself, and what has fields says what it is by these.
+  const place = [1, 2, 3];
+  const fine = new World({ about: undefined, particles: [{ position: place, velocity: place }, new Mine(), { mass: new Number(3), position: new Float32Array(3) }] });
+  assert.deepEqual([fine.count, ...fine.positions().slice(0, 3), ...fine.velocities().slice(0, 3)], [3, 1, 2, 3, 1, 2, 3]);
+  for (const world of [ball, fine]) world.free();
 });
 
 test("scenes give cause to remarks", () => {

@@ -1,7 +1,8 @@
 //! Arguments that JavaScript passes, checked: they may be anything, and reading them may run anything. Whatever is thrown then is caught here.
 
 use crate::files::{Files, long};
-use js_sys::{BigInt, Function, JSON, JsString, Reflect};
+use crate::json::json;
+use js_sys::{BigInt, Function, JsString, Reflect};
 use pointmass::{Time, Vec3};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
@@ -13,10 +14,6 @@ extern "C" {
 
     #[wasm_bindgen(method, catch)]
     fn clone(this: &JsFiles) -> Result<Files, JsValue>;
-
-    /// `Array.from`, which may meet anything on its way.
-    #[wasm_bindgen(js_namespace = Array, js_name = from, catch)]
-    fn list_of(values: &JsValue) -> Result<JsValue, JsValue>;
 }
 
 /// A scene as it was given.
@@ -42,7 +39,7 @@ pub(crate) fn scene(scene: &JsValue) -> Result<Given, JsError> {
     if !is_plain(scene) {
         return Err(JsError::new(&format!("a scene has to be an object, or its text, not {}", named(scene))));
     }
-    json(scene, "scene").map(Given::Object)
+    json(scene, "scene", ':').map(Given::Object)
 }
 
 /// A particle that was given, as JSON in one line.
@@ -53,17 +50,17 @@ pub(crate) fn particle(particle: &JsValue) -> Result<String, JsError> {
     if !is_plain(particle) {
         return Err(JsError::new(&format!("a particle has to be an object, not {}", named(particle))));
     }
-    json(particle, "particle")
+    json(particle, "particle", '.')
 }
 
 /// A property of a value, if it has that and it can be read.
-fn property(value: &JsValue, name: &str) -> Option<JsValue> {
+pub(crate) fn property(value: &JsValue, name: &str) -> Option<JsValue> {
     let value = value.is_object().then_some(value)?;
     Reflect::get(value, &name.into()).ok()
 }
 
 /// Tells whether a value is an object that says what it is by its fields, or by `toJSON`: a promise, say, would be an object without fields.
-fn is_plain(value: &JsValue) -> bool {
+pub(crate) fn is_plain(value: &JsValue) -> bool {
     if !value.is_object() {
         return false;
     }
@@ -73,47 +70,17 @@ fn is_plain(value: &JsValue) -> bool {
     is_top || property(value, "toJSON").is_some_and(|method| method.is_function())
 }
 
-/// The JSON of an object in one line: typed arrays as lists, and numbers that JSON does not know as strings of their names.
-///
-/// # Errors
-/// If it has none, or that is no object.
-fn json(object: &JsValue, what: &str) -> Result<String, JsError> {
-    let refuse = |why: &str| JsError::new(&format!("the {what} has no JSON: {why}"));
-    let thrown = |error: JsValue| {
-        let why = property(&error, "message").and_then(|why| why.as_string());
-        // Engines draw a picture of what is circular, on further lines.
-        refuse(why.as_deref().and_then(|why| why.lines().next()).unwrap_or("it cannot be written"))
-    };
-    let text = |text: JsString| if text.is_string() { long(&text) } else { Err(refuse("it is not to be written")) };
-    let mut written = text(JSON::stringify(object).map_err(thrown)?)?;
-    // JSON has no NaN and would say null, which may mean something else, and of a typed array would make an object.
-    if ["null", "{\"0\":"].iter().any(|sign| written.contains(sign)) {
-        let replace = &mut |_: JsString, value: JsValue| Ok(Some(writable(value)));
-        written = text(JSON::stringify_with_replacer_func(object, replace, None).map_err(thrown)?)?;
-    }
-    if written.starts_with('{') { Ok(written) } else { Err(refuse("its toJSON gives no object")) }
-}
-
 /// Numbers that JSON does not know, by name.
 pub(crate) const UNWRITTEN: [&str; 3] = ["NaN", "Infinity", "-Infinity"];
 
-/// A value as it is to be written.
-fn writable(value: JsValue) -> JsValue {
-    if js_sys::ArrayBuffer::is_view(&value) {
-        return list_of(&value).unwrap_or(value);
-    }
-    unwritten(&value).map_or(value, JsValue::from_str)
-}
-
 /// The name of a number that JSON does not know.
-fn unwritten(value: &JsValue) -> Option<&'static str> {
-    let number = value.as_f64().filter(|number| !number.is_finite())?;
+pub(crate) fn unwritten(number: f64) -> Option<&'static str> {
     let kind = if number.is_nan() { 0 } else { 1 + usize::from(number < 0.0) };
-    Some(UNWRITTEN[kind])
+    (!number.is_finite()).then_some(UNWRITTEN[kind])
 }
 
 /// The kind of a value, in a message, and what to do about it.
-fn named(value: &JsValue) -> String {
+pub(crate) fn named(value: &JsValue) -> String {
     const LONGEST: usize = 60;
     if value.is_null() || value.is_undefined() {
         return if value.is_null() { "null" } else { "undefined" }.to_owned();
@@ -302,7 +269,7 @@ fn whole(value: &JsValue, most: f64) -> Whole {
 /// A value in a message.
 fn shown(value: &JsValue) -> String {
     let Some(number) = value.as_f64() else { return named(value) };
-    match unwritten(value) {
+    match unwritten(number) {
         Some(name) => name.to_owned(),
         None if number.abs() >= 1e21 => format!("{number:e}"),
         None => number.to_string(),

@@ -18,6 +18,7 @@ mod blows;
 mod clock;
 mod draw;
 mod files;
+mod json;
 mod memory;
 mod path;
 mod saved;
