@@ -134,6 +134,17 @@ test("what JSON cannot say is refused by its path", () => {
   for (const world of [ball, fine]) world.free();
 });
 
+test("too little room for what a scene begins with is told", () => {
+  const boxes = { boxes: [{ sides: [1, 1, 1], mass: 1, position: [0, 0, 0], count: [1, 2, 1] }] };
+  for (const [capacity, count, told] of [[15, 15, 1], [0, 0, 1], [16, 16, 0], [17, 16, 0], [null, 16, 0]]) {
+    const world = new World(boxes, null, capacity);
+    assert.deepEqual([world.count, JSON.parse(world.report()).refused], [count, 16 - count]);
+    const warning = `a capacity of ${capacity} is less than the 16 particles that the scene begins with: the last of them are refused, and bodies that these are part of are cut`;
+    assert.deepEqual(world.warnings, told === 1 ? [warning] : []);
+    world.free();
+  }
+});
+
 test("scenes give cause to remarks", () => {
   const old = { ...scene, emitters: [{ ...scene.emitters[0], speed: { mean: 5, variance: 1 }, elasticity: 2 }] };
   const [name, odd, ...others] = new World(old).warnings;

@@ -152,7 +152,8 @@ impl World {
     /// Loads a scene: an object as JSON has it, its text, or a text in `.scn`; with the files it names.
     ///
     /// `capacity` is how many particles may live at once and `seed` that of all randomness; by default both are what
-    /// the scene says.
+    /// the scene says. What the scene begins with has room beyond its `run.capacity`, and none beyond this `capacity`: the
+    /// last of it are refused then, which `warnings` tells.
     ///
     /// # Errors
     /// If the scene cannot be used, with the place and what was expected, or there is not enough memory.
@@ -166,8 +167,14 @@ impl World {
         let mut files = arguments::files(files)?;
         let given = arguments::scene(scene)?;
         let (capacity, seed) = (self::capacity(capacity)?, self::seed(seed)?);
-        let Loaded { file, model, warnings } = Loaded::new(&given, &mut files)?;
-        let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(model.particles.len() as u32));
+        let Loaded { file, model, mut warnings } = Loaded::new(&given, &mut files)?;
+        let first = model.particles.len() as u32;
+        let capacity = capacity.unwrap_or_else(|| file.run.capacity.max(first));
+        if capacity < first {
+            warnings.push(format!(
+                "a capacity of {capacity} is less than the {first} particles that the scene begins with: the last of them are refused, and bodies that these are part of are cut"
+            ));
+        }
         let system = System::with(heap(&model, capacity)?);
         let has_trails = model.materials.iter().any(|material| material.trail.is_some());
         let slots = if has_trails { capacity as usize } else { 0 };
