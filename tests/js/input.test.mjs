@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { afterEach, test } from "node:test";
+import { runInNewContext } from "node:vm";
 import init, { Files, World } from "../../target/npm/node.js";
 
 const scene = {
@@ -143,6 +144,17 @@ test("too little room for what a scene begins with is told", () => {
     assert.deepEqual(world.warnings, told === 1 ? [warning] : []);
     world.free();
   }
+});
+
+test("arrays of other windows are arrays", () => {
+  const files = new Files();
+  const elsewhere = (code) => runInNewContext(code);
+  files.addMesh("a", elsewhere("new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0])"), elsewhere("new Uint32Array([0, 1, 2])"));
+  new World({ scenery: [{ shape: { mesh: "a" } }] }, files).free();
+  for (const [coordinates, indices] of [["new Uint32Array(9)", "new Uint32Array(3)"], ["new Float32Array(9)", "new Int32Array(3)"], ["[0]", "[0]"], ["({ length: 9, [Symbol.toStringTag]: 'Float32Array' })", "new Uint32Array(3)"]]) {
+    refuses(() => files.addMesh("a", elsewhere(coordinates), elsewhere(indices)), /^a: coordinates have to be a Float32Array, and indices a Uint32Array/);
+  }
+  files.free();
 });
 
 test("scenes give cause to remarks", () => {

@@ -1,7 +1,7 @@
 //! Memory must not run out: WebAssembly cannot go on after an allocation that fails, so room is made sure of before.
 
 use crate::files::Files;
-use js_sys::{Float32Array, Int32Array, Uint8Array, Uint32Array};
+use js_sys::{ArrayBuffer, Float32Array, Int32Array, Reflect, Symbol, Uint8Array, Uint32Array};
 use pointmass::scene::{BoxForm, Form, SceneFile};
 use wasm_bindgen::prelude::*;
 
@@ -191,12 +191,18 @@ pub(crate) fn bytes(numbers: &[u8]) -> Result<Uint8Array, JsError> {
 /// An array that was given, as one of the engine's own: a caller's may be detached, or of a class that says what is not so. Nothing, where it
 /// is none or cannot be read.
 pub(crate) fn own_floats(array: &Float32Array) -> Option<Float32Array> {
-    let given = array.is_instance_of::<Float32Array>().then_some(array)?;
+    let given = is_array(array, "Float32Array").then_some(array)?;
     engine::Floats::like(given).ok().map(JsCast::unchecked_into)
 }
 
 /// The same of whole numbers, zero or more.
 pub(crate) fn own_words(array: &Uint32Array) -> Option<Uint32Array> {
-    let given = array.is_instance_of::<Uint32Array>().then_some(array)?;
+    let given = is_array(array, "Uint32Array").then_some(array)?;
     engine::Words::like(given).ok().map(JsCast::unchecked_into)
+}
+
+/// Tells whether a value is a typed array of such a name, which those of other windows have too.
+fn is_array<T: JsCast>(value: &T, name: &str) -> bool {
+    let tag = || Reflect::get(value.as_ref(), &Symbol::to_string_tag()).ok().and_then(|tag| tag.as_string());
+    value.is_instance_of::<T>() || ArrayBuffer::is_view(value.as_ref()) && tag().as_deref() == Some(name)
 }
