@@ -595,6 +595,10 @@ test("what there is to draw is in lists of numbers", () => {
   near([...world.shapes().slice(0, 12)], [0, 5, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]);
   const dice = new World({ boxes: [{ sides: [0.2, 0.1, 0.4], mass: 1, position: [1, 2, 3], count: [2, 1, 1], spacing: [1, 0, 0] }] });
   assert.equal(dice.boxes().length, 2 * 17);
+  assert.deepEqual([dice.boxes()[16], dice.materials()[0]], [-1, -1]);
+  const painted = new World({ materials: [{}, {}], boxes: [0, 1].map((material) => ({ sides: [1, 1, 1], mass: 1, position: [3 * material, 0, 0], material })) });
+  assert.deepEqual([painted.boxes()[16], painted.boxes()[33]], [0, 1]);
+  painted.free();
   near([...dice.boxes().slice(17, 29)], [2, 2, 3, 0.1, 0, 0, 0, 0.05, 0, 0, 0, 0.2]);
   assert.equal(dice.surfaces().length, 0);
   dice.free();

@@ -167,7 +167,9 @@ pub(crate) fn strands_of(state: &State<'_>, model: &Model, light: &StrandLight) 
 fn instances(what: &str, list: &[Instance]) -> Listed {
     let numbers = list.iter().map(|instance| {
         let Instance { center, axes, color, material } = *instance;
-        joined::<17>(&[&center.to_array(), &axes.to_cols_array(), &shares(color), &[f32::from(material)]])
+        // A box may have none, which is -1 as in the list of materials.
+        let material = if material == u16::MAX { -1.0 } else { f32::from(material) };
+        joined::<17>(&[&center.to_array(), &axes.to_cols_array(), &shares(color), &[material]])
     });
     packed(what, list.len(), numbers)
 }

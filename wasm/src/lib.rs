@@ -507,7 +507,7 @@ impl World {
     }
 
     /// The rigid boxes of the scene that can be seen, 17 numbers each: the middle, the ways from there to the middles of three sides \[m\], red,
-    /// green, blue, opacity from 0 to 1, and the material's number. A copy.
+    /// green, blue, opacity from 0 to 1, and the material's number, -1 for none. A copy.
     ///
     /// # Errors
     /// If there is not enough memory.
