@@ -770,6 +770,17 @@ test("blows are told", () => {
   }
   assert.deepEqual(met.toSorted((a, b) => a - b), [0, 0, 8, 8]);
   assert.ok(Math.abs(boxes.blows()[9] - 2) < 0.01, String(boxes.blows()));
+  // Nobody who does not listen misses anything.
+  const box = { sides: [0.2, 0.2, 0.2], mass: 1, position: [0, 0.5, 0] };
+  for (const listen of [() => {}, (world) => world.listen(0, 0), (world) => { world.listen(); world.listen(0, 0); }]) {
+    const world = new World({ ...gravity, ...ground, boxes: [box], particles: [ball(3, 0.5), ball(3, 0.9)], contacts: { impulse: {} } });
+    listen(world);
+    for (let frame = 1; frame <= 60; frame++) {
+      world.advance(0.01);
+      assert.deepEqual([world.blows().length, world.missedBlows], [0, 0]);
+    }
+    world.free();
+  }
   for (const wrong of [-1, NaN, "1", {}, 1n]) refuses(() => boxes.listen(wrong), /^the speed of a blow has to be a number, zero or more, not /);
   for (const wrong of [-1, 0.5, "1", 2 ** 32]) refuses(() => boxes.listen(1, wrong), /^the most blows has to be a whole number from 0 to /);
   refuses(() => boxes.listen(1, 4e9), /^there is not enough memory for so many blows$/);
