@@ -209,9 +209,10 @@ impl World {
 
     /// Moves the world on by the time that has gone by \[s\], in steps of the scene's own length (`dt`): what a page calls every frame.
     ///
-    /// Steps end at multiples of `dt`, as those of the command line do, so a run does not depend on how long frames last. What is left
-    /// over counts for the next call. There are `most` steps at the most, by default as many as make a tenth of a second, and no fewer than 8;
-    /// time beyond that is dropped, so that a tab which was hidden, or a machine which is too slow, falls behind and does not freeze.
+    /// Steps end at multiples of `dt`, as those of the command line do but for its last, which ends with `duration`; so a run does not
+    /// depend on how long frames last. What is left over counts for the next call. There are `most` steps at the most, by default as many
+    /// as make a tenth of a second, and no fewer than 8; time beyond that is dropped, so that a tab which was hidden, or a machine which is
+    /// too slow, falls behind and does not freeze.
     ///
     /// Returns the share of the next step that has gone by, from 0 to 1: who draws what is between the places before the last step and
     /// those after it, by that share, has smooth pictures at any rate of frames.
