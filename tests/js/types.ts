@@ -35,6 +35,11 @@ export async function main(draw: (positions: Float32Array, count: number) => voi
     draw(new Float32Array(rows.length), materials.length);
     draw(world.springs(), lists.length + world.springs(0.5).length);
     const [colors, ids]: [Uint8Array, Uint32Array] = [world.colors(), world.ids()];
+    // Copies are in memory that nobody else writes to, so that whatever takes no shared memory takes them; views need not be.
+    const copies: Float32Array<ArrayBuffer>[] = [world.blows(), world.looks(), world.sprites([0, 1, 9]), world.shapes(), world.boxes(), world.surfaces(), world.strands([0, 1, 9]), world.springs(), world.links(), world.trails()];
+    const words: Uint32Array<ArrayBuffer>[] = [world.ids(), world.points(), world.struck()];
+    const others: [Uint8Array<ArrayBuffer>, Int32Array<ArrayBuffer>] = [world.colors(), world.materials()];
+    draw(new Float32Array(copies.length + words.length), others.length);
     const said: string[] = [world.hash(), world.report(), ...world.warnings];
     draw(new Float32Array(colors.length + ids.length), said.length);
     world.free();

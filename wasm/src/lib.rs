@@ -326,6 +326,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn blows(&self) -> Result<Float32Array, JsError> {
         memory::floats(&self.blows.numbers(self.state.system.time())?)
     }
@@ -335,6 +336,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Uint32Array<ArrayBuffer>")]
     pub fn struck(&self) -> Result<Uint32Array, JsError> {
         memory::words(&self.blows.ids()?)
     }
@@ -447,6 +449,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Int32Array<ArrayBuffer>")]
     pub fn materials(&self) -> Result<Int32Array, JsError> {
         draw::materials_of(&self.state.system.state(&self.model.scene()))
     }
@@ -456,6 +459,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Uint32Array<ArrayBuffer>")]
     pub fn points(&self) -> Result<Uint32Array, JsError> {
         let serial = self.state.system.particles().serial;
         draw::points_of(&self.state.system.state(&self.model.scene()), serial, &self.covered)
@@ -465,6 +469,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn colors(&self) -> Result<Uint8Array, JsError> {
         let colors = self.appearances("the colours", |look| look.color)?;
         memory::bytes(colors.as_flattened())
@@ -476,6 +481,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn looks(&self) -> Result<Float32Array, JsError> {
         let looks = self.appearances("the looks", |look| [look.diameter, look.scale, look.glow, look.rotation])?;
         memory::floats(looks.as_flattened())
@@ -487,6 +493,7 @@ impl World {
     ///
     /// # Errors
     /// If these are not three finite numbers each, or there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn sprites(
         &self,
         #[wasm_bindgen(unchecked_param_type = "readonly number[] | Float32Array | Float64Array")] eye: &JsValue,
@@ -503,6 +510,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn shapes(&self) -> Result<Float32Array, JsError> {
         draw::shapes_of(&self.state.system.state(&self.model.scene()))
     }
@@ -512,6 +520,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn boxes(&self) -> Result<Float32Array, JsError> {
         draw::boxes_of(&self.state.system.state(&self.model.scene()), &self.model)
     }
@@ -521,6 +530,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn surfaces(&self) -> Result<Float32Array, JsError> {
         draw::surfaces_of(&self.state.system.state(&self.model.scene()), &self.model)
     }
@@ -530,6 +540,7 @@ impl World {
     ///
     /// # Errors
     /// If that is not three finite numbers, or there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn strands(
         &self,
         #[wasm_bindgen(unchecked_param_type = "readonly number[] | Float32Array | Float64Array")] eye: &JsValue,
@@ -544,6 +555,7 @@ impl World {
     ///
     /// # Errors
     /// If `full` is no finite number above zero, or there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn springs(
         &self,
         #[wasm_bindgen(unchecked_optional_param_type = "number | null")] full: &JsValue,
@@ -557,6 +569,7 @@ impl World {
     ///
     /// # Errors
     /// As of `springs`.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn links(
         &self,
         #[wasm_bindgen(unchecked_optional_param_type = "number | null")] full: &JsValue,
@@ -570,6 +583,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Float32Array<ArrayBuffer>")]
     pub fn trails(&mut self) -> Result<Float32Array, JsError> {
         let mut list = memory::filled(Line::NONE, self.state.knots.len() + self.state.rings.len(), "the trails")?;
         let scene = self.model.scene();
@@ -582,6 +596,7 @@ impl World {
     ///
     /// # Errors
     /// If there is not enough memory.
+    #[wasm_bindgen(unchecked_return_type = "Uint32Array<ArrayBuffer>")]
     pub fn ids(&self) -> Result<Uint32Array, JsError> {
         memory::words(self.state.system.particles().serial)
     }
