@@ -1,10 +1,12 @@
 //! Constraints of distance: rods, strings and chains against their closed forms, whatever the method, the step and the sub-steps.
 
+use pointmass::scene::{Model, SceneFile};
 use pointmass::shape::Plane;
 use pointmass::{
     Contacts, Distance, Drag, Event, EventKind, Events, Gravity, Ledger, Measures, Method, Particle, Scene, Time, Vec3,
 };
 use pointmass_tests::{Random, gap, is_run, often, run, started};
+use serde_json::json;
 
 const G: f64 = 9.81;
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.0) };
@@ -89,6 +91,58 @@ fn a_chain_hangs_longer_by_what_its_links_give_way() {
                 let hangs = -f64::from(system.particles().position[links as usize].y) - n * f64::from(length);
                 let off = hangs / longer - 1.0;
                 assert!(off.abs() < 0.01, "{method}, {substeps} sub-steps of {compliance} m/N: {off}");
+            }
+        }
+    }
+}
+
+/// Whatever brakes what hangs still takes nothing of its weight: a link, a strand and a sheet give way as by the method that takes forces as a sub-step begins.
+/// Where others take them on average, they are off by a twelfth of the square of what drag takes of speeds in a sub-step.
+#[test]
+fn what_hangs_in_still_air_weighs_what_it_weighs() {
+    let scene = |method: Method, substeps: u32, rate: f64, drag: &str| {
+        let mass = [0.5, 0.02, 0.002].map(|mass| mass * rate);
+        json!({
+            "run": {"integrator": method.to_string(), "substeps": substeps},
+            "forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}, {drag: if drag == "drag" { json!({}) } else { json!({"field": []}) }}],
+            "particles": [{"fixed": true}, {"position": [0, -1, 0], "mass": 0.5, "drag": mass[0]}],
+            "constraints": [{"distance": {"ends": [0, 1], "length": 1, "compliance": 0.02, "damping": 5}}],
+            "strands": [{"form": {"curve": [[3, 0, 0], [4, 0, 0]]}, "segments": 12, "radius": 0.003, "young": 2e11, "density": 7900, "damping": 0.05,
+                "drag": rate * 7900.0 * std::f64::consts::PI * 9e-6, "fixed": [0, 1]}],
+            "cloths": [{"form": {"sheet": {"corner": [6, 0, 0], "sides": [[0.2, 0, 0], [0, -0.5, 0]], "cells": [2, 5]}}, "density": 0.2,
+                "drag": 0.02 * rate / 18.0, "shell": {"stretch": [20, 20], "shear": 5, "bending": 1e-5, "damping": 0.05}, "fixed": [0, 1, 2]}],
+        })
+        .to_string()
+    };
+    let hangs = |method: Method, substeps: u32, rate: f64, drag: &str| {
+        let file = SceneFile::from_json("a.json", &scene(method, substeps, rate, drag)).expect("a scene");
+        let model = Model::load(&file, "a.json", &mut ()).expect("a sound scene");
+        let mut system = model.system(0, 1).expect("there is memory");
+        for frame in 1..=150 {
+            system.step_to(&model.scene(), Time::frame(frame, 60));
+        }
+        let y = |row: usize| f64::from(system.particles().position[row].y);
+        let last = model.particles.len() - 1;
+        [-1.0 - y(1), -0.5 - y(19), -y(last)]
+    };
+    let mut cases = 0;
+    for substeps in [1, 2, 5, 10] {
+        for rate in [4.0, 15.0] {
+            for drag in ["drag", "wind"] {
+                let right = hangs(Method::Symplectic, substeps, rate, drag);
+                for &method in Method::ALL {
+                    if !is_run(&mut cases) {
+                        continue;
+                    }
+                    let taken = rate / (60.0 * f64::from(substeps));
+                    for (part, (has, right)) in hangs(method, substeps, rate, drag).into_iter().zip(right).enumerate() {
+                        let off = (has / right - 1.0).abs();
+                        assert!(
+                            off < 0.003 + taken * taken / 4.0,
+                            "{method}, {rate}/s in {substeps} sub-steps, {drag}, part {part}: {has}, not {right}"
+                        );
+                    }
+                }
             }
         }
     }

@@ -17,6 +17,7 @@ mod distance;
 mod inertia;
 #[cfg(feature = "alloc")]
 mod kind;
+mod lead;
 mod load;
 mod moved;
 mod rate;
@@ -176,8 +177,10 @@ fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment
             }
             bodies.loads.fill(bytemuck::Zeroable::zeroed());
             constraints.prepare(&mut bodies, &mut share);
+            moved.lead();
         }
         Moment::After => {
+            moved.take_back_lead(substep.seconds());
             moved.tell(Phase::Advance, end);
             moved.tell(Phase::Project, end);
             let (mut bodies, mut share) = moved.lend(substep, &mut all_pairs);
@@ -185,6 +188,7 @@ fn constrain(constraints: &dyn Constraint, moved: &mut Moved<'_>, moment: Moment
             constraints.begin(&mut bodies, &mut share);
             constraints.project(&mut bodies, &mut share);
             constraints.settle(&mut bodies, &mut share);
+            moved.keep_lead();
             moved.tell(Phase::Constrain, end);
         }
     }

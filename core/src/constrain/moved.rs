@@ -31,7 +31,9 @@ pub(crate) struct Moved<'a> {
     pub(crate) position: &'a mut [Vec3],
     pub(crate) velocity: &'a mut [Vec3],
     /// Places and velocities at the sub-step's beginning; empty where nobody asks.
-    pub(crate) start: [&'a [Vec3]; 2],
+    pub(crate) start: [&'a mut [Vec3]; 2],
+    /// The share of what constraints have done to velocities with which the method begins; zero: it need not know of it.
+    pub(crate) lead: f32,
     pub(crate) pending_death: &'a [PendingDeath],
     /// A mark for each of what constraints do to it, and the words that they keep through the step.
     pub(crate) marks: &'a mut [u32],
@@ -68,7 +70,7 @@ impl Moved<'_> {
         let bodies = Bodies {
             position: self.position,
             velocity: self.velocity,
-            before: self.start,
+            before: self.start.each_ref().map(|column| &**column),
             radius: &lives.radius[..len],
             mass: &lives.mass[..len],
             inverse_mass: &inverse_mass[..len],

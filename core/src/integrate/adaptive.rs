@@ -45,6 +45,10 @@ impl<I: Integrator> Integrator for Adaptive<I> {
         self.inner.columns().saturating_add(6)
     }
 
+    fn lead(&self) -> f32 {
+        self.inner.lead()
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, work, hint, effort, .. } = motion;
         let ([x0, v0, xa, va, xh, vh], mut work) = work.split();

@@ -38,6 +38,10 @@ impl Integrator for Embedded {
         6
     }
 
+    fn lead(&self) -> f32 {
+        0.5
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, work, hint, effort, .. } = motion;
         let [x0, v0, a1, a2, a3, a4] = work.take();

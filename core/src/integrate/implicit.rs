@@ -46,6 +46,10 @@ impl Integrator for Implicit {
         true
     }
 
+    fn lead(&self) -> f32 {
+        1.0
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, start: [x0, v0], work, effort, .. } = motion;
         let [r, p, q, correction, inverse_diagonal] = work.take();

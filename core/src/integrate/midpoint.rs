@@ -28,6 +28,10 @@ impl Integrator for Midpoint {
         true
     }
 
+    fn lead(&self) -> f32 {
+        0.5
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         advance(motion, [time, time + step.half()], step, world);
     }
@@ -44,6 +48,10 @@ impl Integrator for LectureMidpoint {
 
     fn is_local(&self) -> bool {
         true
+    }
+
+    fn lead(&self) -> f32 {
+        0.5
     }
 
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {

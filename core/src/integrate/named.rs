@@ -138,6 +138,9 @@ impl Integrator for Method {
     fn drift(&self) -> Option<Drift> {
         self.integrator().drift()
     }
+    fn lead(&self) -> f32 {
+        self.integrator().lead()
+    }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.integrator().advance(motion, time, step, world);
     }
@@ -169,6 +172,9 @@ impl Integrator for Tuned {
     }
     fn drift(&self) -> Option<Drift> {
         self.with(|integrator| integrator.drift())
+    }
+    fn lead(&self) -> f32 {
+        self.with(|integrator| integrator.lead())
     }
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         self.with(|integrator| integrator.advance(motion, time, step, world));

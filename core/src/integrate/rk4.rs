@@ -25,6 +25,10 @@ impl Integrator for Rk4 {
         true
     }
 
+    fn lead(&self) -> f32 {
+        0.5
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, start: [x0, v0], work, .. } = motion;
         let [a, sum_x, sum_v] = work.take();

@@ -20,6 +20,10 @@ impl Integrator for Verlet {
         true
     }
 
+    fn lead(&self) -> f32 {
+        0.5
+    }
+
     fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
         let Motion { position: x, velocity: v, work, .. } = motion;
         let [a, b] = work.take();

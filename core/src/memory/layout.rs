@@ -6,6 +6,8 @@ use glam::Vec3;
 
 /// The words that say what a particle bears.
 pub(crate) const LOAD_WORDS: usize = 13;
+/// Those that say what constraints have done to its velocity.
+pub(crate) const LEAD_WORDS: usize = 3;
 
 /// So many words of 32 bits for each particle, and so many besides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,6 +112,8 @@ pub(crate) struct Plan {
     pub(crate) ageing: usize,
     /// True if anybody asks for places and velocities at a sub-step's beginning.
     pub(crate) start: bool,
+    /// Words a particle for what constraints have done to it, if the method is to know of that.
+    pub(crate) lead: usize,
     /// True if there are constraints, and their demand.
     pub(crate) constrained: bool,
     pub(crate) constraints: Demand,
@@ -144,7 +148,7 @@ impl Plan {
 
     /// The words kept from step to step: columns of a user's own, what materials change, and what constraints keep.
     pub(crate) fn kept(&self) -> Words {
-        Words { per_row: self.custom.saturating_add(self.ageing), fixed: 0 }.and(self.constraints.kept)
+        Words { per_row: self.custom.saturating_add(self.ageing + self.lead), fixed: 0 }.and(self.constraints.kept)
     }
 
     /// Words for each of so many particles that it takes.
@@ -366,7 +370,18 @@ impl Layout {
         let custom = take(&mut rest, self.plan.custom.wrapping_mul(self.capacity));
         take(&mut rest, self.plan.ageing * self.capacity);
         let rows = take(&mut rest, per_row.wrapping_mul(self.capacity));
+        take(&mut rest, self.plan.lead * self.capacity);
         (bytemuck::cast_slice_mut(custom), Kept { rows, fixed: take(&mut rest, fixed) })
+    }
+
+    /// What constraints have done to velocities, by columns of coordinates.
+    pub(crate) fn lead<'m>(&self, words: &'m mut [u32]) -> [&'m mut [f32]; 3] {
+        let mut rest = words;
+        let before =
+            self.plan.custom.saturating_add(self.plan.ageing).saturating_add(self.plan.constraints.kept.per_row);
+        take(&mut rest, before.wrapping_mul(self.capacity));
+        let column = self.plan.lead / LEAD_WORDS * self.capacity;
+        [(); 3].map(|()| bytemuck::cast_slice_mut(take(&mut rest, column)))
     }
 
     /// Drags and masses of before materials have changed them.

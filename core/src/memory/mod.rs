@@ -15,7 +15,7 @@ pub use column::Column;
 pub use heap::Heap;
 pub(crate) use in_common::InCommon;
 pub use layout::{Demand, Kept, Words};
-pub(crate) use layout::{LOAD_WORDS, Layout, Past, Plan, Scratch, Shares, take, take_vectors};
+pub(crate) use layout::{LEAD_WORDS, LOAD_WORDS, Layout, Past, Plan, Scratch, Shares, take, take_vectors};
 pub use likeness::{Likeness, Own};
 pub(crate) use storage::Attribute;
 pub use storage::{Alike, Columns, Common, Inline, Size, Slices, Storage};

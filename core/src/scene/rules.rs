@@ -9,7 +9,7 @@ use crate::index::IndexChoice;
 use crate::integrate::{Integrator, Symplectic};
 use crate::material::MaterialList;
 use crate::math::max;
-use crate::memory::{Likeness, Own, Plan, Size};
+use crate::memory::{LEAD_WORDS, Likeness, Own, Plan, Size};
 use crate::observe::{Attention, Observer};
 use crate::particles::Particle;
 use crate::reap::Reaper;
@@ -126,6 +126,7 @@ impl Scene<'_> {
             custom: self.custom.count(),
             ageing: self.materials.code().map_or(0, |code| (code.kept)(self.materials)),
             start: self.needs_start() || needs.tell.is_some(),
+            lead: if constrained && self.integrator.lead() > 0.0 { LEAD_WORDS } else { 0 },
             constrained,
             constraints: self.constraints.demand().with_shared(),
             trees: needs.tree_columns(),

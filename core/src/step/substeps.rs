@@ -69,7 +69,7 @@ impl Moved<'_> {
         let motion = Motion {
             position: self.position,
             velocity: self.velocity,
-            start: self.start,
+            start: self.start.each_ref().map(|column| &**column),
             work: Work { memory, stride, len },
             hint,
             effort: &mut self.report.effort,

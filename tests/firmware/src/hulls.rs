@@ -87,7 +87,7 @@ const fn slant([x, y, z]: [f32; 3], first: u16) -> HullFace {
 const PARTICLES: usize = 26;
 const BALLS: usize = 2;
 const COLUMNS: usize = 192;
-const KEPT: usize = 128;
+const KEPT: usize = 131;
 
 /// What they need, none of it on the stack.
 pub(crate) struct Memory {
