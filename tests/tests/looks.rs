@@ -1,8 +1,8 @@
 //! What there is to draw: trails, lines, shapes and surfaces as plain lists.
 
-use pointmass::constrain::{Distance, Rope, ShapeMatching, TiedRope};
+use pointmass::constrain::{Distance, RigidBodies, RigidBox, Rope, ShapeMatching, TiedRope};
 use pointmass::draw::{
-    Instance, Knot, Line, Lock, Patch, Ring, StrandLight, Trails, Vertex, arrows, cells, links, links_by_strain,
+    Instance, Knot, Line, Lock, Patch, Ring, StrandLight, Trails, Vertex, arrows, body, cells, links, links_by_strain,
     solids, springs, strained, strands, surface, velocities,
 };
 use pointmass::index::{SpatialIndex, Structure};
@@ -424,4 +424,51 @@ fn a_vector_of_materials_is_a_list() {
     let scene = Scene { materials: &materials, ..Scene::EMPTY };
     assert_eq!((scene.materials.count(), scene.materials.get(1)), (2, Some(materials[1])));
     assert_eq!(scene.materials.get(2), None);
+}
+
+/// A body that loses particles is drawn where those that are left have it, as large as it is, however few they are.
+#[test]
+fn a_body_that_loses_particles_stays_as_it_is() {
+    let turn = [0.3, -0.2, 0.4, 0.8];
+    let cuboid = RigidBox { turn, ..RigidBox::new(Vec3::new(0.3, 0.2, 0.1), Vec3::new(1.0, 2.0, -1.0), 0) };
+    let spin = Vec3::new(1.0, 2.0, -0.5) * 3.0;
+    let particles = cuboid.solid(Particle::REST);
+    let boxes = RigidBodies::boxes([cuboid]);
+    // Corners by bits: a face, three of it, an edge, a diagonal of space, one.
+    for left in [&[0, 1, 2, 3, 4, 6][..], &[0, 1, 4, 5], &[0, 1, 4], &[3, 7], &[0, 7], &[5]] {
+        let all: Vec<Particle> = (0..8)
+            .map(|i| {
+                let lifetime = if left.contains(&i) { f32::INFINITY } else { 0.4 };
+                let p = particles[i];
+                Particle { velocity: spin.cross(p.position - cuboid.center), lifetime, ..p }
+            })
+            .collect();
+        let scene = Scene { start: &all, constraints: &boxes, substeps: 20, ..Scene::EMPTY };
+        let mut system = started(&scene, 8, 1);
+        let mut drawn = |frame: u64| {
+            system.step_to(&scene, Time::frame(frame, 60));
+            body(&system.state(&scene), &cuboid, &all).expect("it is there")
+        };
+        let before = drawn(23);
+        let after = drawn(25);
+        let off = |a: Vec3, b: Vec3| (a - b).length();
+        let [x, y, z] = [after.axes.x_axis, after.axes.y_axis, after.axes.z_axis];
+        for (axis, half) in [(x, 0.3), (y, 0.2), (z, 0.1)] {
+            assert!((axis.length() - half).abs() < 1e-4, "{left:?}: {axis} is not {half} long");
+        }
+        assert!(x.dot(y).abs() + y.dot(z).abs() + z.dot(x).abs() < 1e-4, "{left:?}: {x} {y} {z}");
+        // It goes on turning, by a quarter of a radian; about a line nothing says how far.
+        if left.len() > 2 {
+            assert!(off(before.center, after.center) < 0.3, "{left:?}: {} and {}", before.center, after.center);
+            assert!(off(before.axes.x_axis, x) < 0.3, "{left:?}: {} and {x}", before.axes.x_axis);
+        }
+        // Each particle that is left is where the box has it.
+        let state = system.state(&scene);
+        for &i in left {
+            let row = state.springs.row(i as u32).expect("it lives");
+            let sign = |bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            let place = after.center + (x * sign(0) + y * sign(1) + z * sign(2)) / 3f32.sqrt();
+            assert!(off(place, state.position[row]) < 1e-4, "{left:?}: {i} is at {}", state.position[row]);
+        }
+    }
 }
