@@ -227,9 +227,15 @@ impl Sprite {
         let strength = BRIGHTNESS * self.opacity * self.glow / spread;
         let mut shed = 0.0;
         stroke.each_pixel(canvas.width, canvas.height, |touch| {
-            let out = touch.offset.length_squared() / (stroke.radius * stroke.radius);
-            let fade = if length > 1.0 { touch.along * touch.along } else { 1.0 };
-            let share = strength * fade * fall(out) * self.open(canvas, touch.pixel, touch.along);
+            let out = |offset: Vec2| (offset.length_squared() / (stroke.radius * stroke.radius)).min(1.0);
+            let light = if length > 1.0 {
+                // All of it is where it is now, and its trace fades from there.
+                let from_head = touch.offset - (1.0 - touch.along) * (self.head - self.tail);
+                (touch.along * touch.along * fall(out(touch.offset))).max(fall(out(from_head)))
+            } else {
+                fall(out(touch.offset))
+            };
+            let share = strength * light * self.open(canvas, touch.pixel, touch.along);
             canvas.shine(touch.pixel, self.haze.clear * self.color, share);
             shed += share;
         });

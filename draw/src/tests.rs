@@ -1,6 +1,7 @@
 //! Pictures hold what the scene says.
 
 mod air;
+mod moving;
 
 use super::*;
 use glam::Vec3;
