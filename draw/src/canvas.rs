@@ -103,13 +103,13 @@ impl<'a> Canvas<'a> {
         self.pixels[pixel].light.add(light);
     }
 
-    /// Sheds light on a pixel. What is bright already cannot show light; there the same amount of
-    /// paint is laid on instead.
-    pub(super) fn shine(&mut self, pixel: usize, color: Vec3, strength: f32) {
+    /// Sheds light on a pixel, of which a share arrives. What is bright already cannot show light; there the same amount of
+    /// paint is laid on instead, and no more of it arrives than of the light.
+    pub(super) fn shine(&mut self, pixel: usize, color: Vec3, strength: f32, clear: f32) {
         let pixel = &mut self.pixels[pixel];
         let bright = (luminance(pixel.color) * strength).min(1.0);
-        pixel.color = pixel.color.lerp(color, bright);
-        pixel.light.add(strength * color);
+        pixel.color = pixel.color.lerp(color, clear * bright);
+        pixel.light.add(strength * (clear * color));
     }
 
     /// Lets a surface return some more or less of the light that falls on it.

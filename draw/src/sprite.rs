@@ -236,7 +236,7 @@ impl Sprite {
                 fall(out(touch.offset))
             };
             let share = strength * light * self.open(canvas, touch.pixel, touch.along);
-            canvas.shine(touch.pixel, self.haze.clear * self.color, share);
+            canvas.shine(touch.pixel, self.color, share, self.haze.clear);
             shed += share;
         });
         bloom.shine(self.tail.lerp(self.head, 0.7), BLOOM * shed * self.haze.clear * self.color);
@@ -296,7 +296,7 @@ impl Sprite {
             };
             let mean = 0.5 * (to - from) * GAUSS.into_iter().map(light).sum::<f32>();
             let share = strength * mean * self.open(canvas, touch.pixel, touch.along);
-            canvas.shine(touch.pixel, self.haze.clear * self.color, share);
+            canvas.shine(touch.pixel, self.color, share, self.haze.clear);
             shed += share;
         });
         bloom.shine(self.tail.midpoint(self.head), BLOOM * shed * self.haze.clear * self.color);

@@ -14,7 +14,7 @@ const SKY: Background = Background::Gradient {
     ground: Vec3::new(0.2, 0.15, 0.1),
 };
 
-fn foggy(stage: Stage, fog: Fog) -> Stage {
+pub(super) fn foggy(stage: Stage, fog: Fog) -> Stage {
     Stage { fog: Some(fog), ..stage }
 }
 

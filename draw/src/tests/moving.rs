@@ -1,7 +1,8 @@
 //! Glows and ribbons on their way, and what comes between.
 
 use super::super::*;
-use super::{HEIGHT, WIDTH, dot, frame, stage};
+use super::air::foggy;
+use super::{HEIGHT, WIDTH, dot, frame, linear, middle, stage};
 use glam::Vec3;
 
 #[test]
@@ -20,5 +21,32 @@ fn a_glow_on_its_way_is_whole_where_it_is_and_its_trace_is_behind() {
         assert_eq!(darker.count(), 0, "{way}: {row:?}");
         let back = (0.6 * way * lens.pixels_per_metre(3.0)) as usize;
         assert!(before[0] > 150 && behind[behind.len() - 1 - back] > 50, "{way}: {row:?}");
+    }
+}
+
+#[test]
+fn a_glow_fades_in_fog_and_darkens_nothing() {
+    let white = Vec3::splat(0.9);
+    let bright = Stage { background: Background::Plain(white), ..stage(vec![]) };
+    let place = Vec3::NEG_Z * 4.0;
+    let empty = middle(&frame(&bright, &[], &[])).map(linear);
+    for way in [Vec3::ZERO, Vec3::X * 0.3] {
+        for exposed in [false, true] {
+            let glow = Dot { glow: 1.0, size: 0.8, previous: place - way, ..dot(place, [255, 120, 40]) };
+            let seen = |stage: &Stage| {
+                let moving = Moving { exposed, dots: &[glow], ..Moving::default() };
+                middle(&Renderer::new(stage, WIDTH, HEIGHT).frame(&moving)).map(linear)
+            };
+            let clear = seen(&bright);
+            let taken = |light: [f64; 3], channel: usize| (empty[channel] - light[channel]).abs();
+            for density in [0.1, 0.5, 1.0, 2.0] {
+                let foggy = seen(&foggy(bright.clone(), Fog { color: Some(white), density, from: 0.0 }));
+                for channel in 0..3 {
+                    let most = if density < 2.0 { taken(clear, channel) } else { 0.0 };
+                    let is_between = taken(foggy, channel) <= most + 0.02;
+                    assert!(is_between, "{density}: {foggy:?}, {clear:?} in clear air, {empty:?} alone");
+                }
+            }
+        }
     }
 }
