@@ -40,6 +40,11 @@ fn fall(out: f32) -> f32 {
     0.5 * near + 0.5 * near * near * near
 }
 
+/// How far before its middle a ball's face is at a place on it, from the middle, 0, to the outline, 1: in radii.
+fn bulge(at: Vec2) -> f32 {
+    (1.0 - at.length_squared()).max(0.0).sqrt()
+}
+
 /// The straight way of a dot in the picture while the shutter is open.
 struct Way {
     direction: Vec2,
@@ -64,6 +69,25 @@ impl Way {
         let half = (radius * radius - beside * beside).max(0.0).sqrt() / self.length;
         let (from, to) = ((along - half).max(0.0), (along + half).min(1.0));
         (from < to).then_some((from, to))
+    }
+}
+
+/// The light on a ball. It is as strong whatever the lamps do, and some of it is white and comes from beside the eye, because a ball is there to be seen.
+struct Key {
+    /// Where it mostly comes from.
+    from: Vec3,
+    /// Its colour, the largest channel of which is 1.
+    tint: Vec3,
+}
+
+impl Key {
+    fn new(lamps: &[Lamp], place: Vec3) -> Self {
+        let beams = || lamps.iter().filter_map(|lamp| lamp.beam(place));
+        let sum: Vec3 = beams().map(|beam| luminance(beam.color) * beam.from).sum();
+        let from = (sum.normalize_or_zero() + Vec3::new(-0.25, 0.4, 0.5)).normalize_or(Vec3::Z);
+        let light: Vec3 = beams().map(|beam| beam.color).sum();
+        let most = light.max_element();
+        Self { from, tint: if most > 0.0 { light / most } else { Vec3::ONE } }
     }
 }
 
@@ -171,7 +195,7 @@ impl Sprite {
     fn paint_ball(&self, canvas: &mut Canvas, lamps: &[Lamp]) {
         let opacity = self.opacity * (1.0 - self.glow);
         let roundness = smooth((self.radius - 1.0) / 2.0);
-        let key = self.key(lamps);
+        let key = Key::new(lamps, self.place);
         let dab = Stroke::dab(self.head, self.radius + 0.5);
         dab.each_pixel(canvas.width, canvas.height, |touch| {
             let covered = (self.radius + 0.5 - touch.offset.length()).clamp(0.0, 1.0);
@@ -183,7 +207,7 @@ impl Sprite {
             let share = opacity * covered * open;
             if share > 0.0 {
                 let at = touch.offset / self.radius;
-                let color = if roundness > 0.0 { self.color.lerp(self.ball(at, key), roundness) } else { self.color };
+                let color = if roundness > 0.0 { self.color.lerp(self.ball(at, &key), roundness) } else { self.color };
                 let share = share * self.thickness(at, roundness);
                 canvas.cover(touch.pixel, self.haze.through(color), share);
             }
@@ -191,12 +215,12 @@ impl Sprite {
     }
 
     /// The colour of a ball at a place on its face, from the middle, 0, to the outline, 1.
-    fn ball(&self, at: Vec2, key: Vec3) -> Vec3 {
-        let normal = Vec3::new(at.x, -at.y, (1.0 - at.length_squared()).max(0.0).sqrt());
-        let lit = 0.5 + 0.5 * normal.dot(key);
-        let half = (key + Vec3::Z).normalize_or(Vec3::Z);
+    fn ball(&self, at: Vec2, key: &Key) -> Vec3 {
+        let normal = Vec3::new(at.x, -at.y, bulge(at));
+        let lit = 0.5 + 0.5 * normal.dot(key.from);
+        let half = (key.from + Vec3::Z).normalize_or(Vec3::Z);
         let shine = normal.dot(half).max(0.0).powi(32);
-        self.color * (0.22 + 0.86 * lit * lit) + 0.3 * shine * self.opacity
+        self.color * (0.22 + 0.86 * lit * lit * key.tint) + 0.3 * shine * self.opacity * key.tint
     }
 
     /// How much of a clear ball's opacity there is at a place on its face. It is of a stuff of which a ray passes less the farther out
@@ -208,14 +232,6 @@ impl Sprite {
         let chord = (1.0 - at.length_squared()).max(0.0).sqrt();
         let taken = 1.0 - (1.0 - self.opacity).powf(chord);
         1.0 + roundness * (taken / self.opacity - 1.0)
-    }
-
-    /// Where the light on a ball mostly comes from. Some always comes from beside the eye, because
-    /// a ball is there to be seen.
-    fn key(&self, lamps: &[Lamp]) -> Vec3 {
-        let beams = lamps.iter().filter_map(|lamp| lamp.beam(self.place));
-        let sum: Vec3 = beams.map(|beam| luminance(beam.color) * beam.from).sum();
-        (sum.normalize_or_zero() + Vec3::new(-0.25, 0.4, 0.5)).normalize_or(Vec3::Z)
     }
 
     /// Light, spread along the way the dot came. The longer the way, the fainter, but not as much
@@ -249,7 +265,7 @@ impl Sprite {
         const EDGES: u8 = 4;
         let opacity = self.seen * self.opacity * (1.0 - self.glow);
         let roundness = smooth((self.radius - 1.0) / 2.0);
-        let key = self.key(lamps);
+        let key = Key::new(lamps, self.place);
         let way = Way::new(self.tail, self.head);
         self.stroke(0.5).each_pixel(canvas.width, canvas.height, |touch| {
             let (along, beside) = way.nearest(&touch);
@@ -264,7 +280,7 @@ impl Sprite {
                 let (from, to) = way.within(self.radius, along, beside.length()).unwrap_or((along, along));
                 let face = |place: f32| {
                     let gone = 0.5 * (from + to) + 0.5 * (to - from) * place - along;
-                    self.ball(((beside - gone * way.length * way.direction) / self.radius).clamp_length_max(1.0), key)
+                    self.ball(((beside - gone * way.length * way.direction) / self.radius).clamp_length_max(1.0), &key)
                 };
                 let ball = || 0.5 * (face(-0.577_350_3) + face(0.577_350_3));
                 let color = if roundness > 0.0 { self.color.lerp(ball(), roundness) } else { self.color };
@@ -315,7 +331,6 @@ impl Sprite {
 
     /// How much of a pixel is open to a place on a solid ball's face, from the middle, 0, to the outline, 1.
     fn open_to_face(&self, canvas: &Canvas, pixel: usize, at: Vec2) -> f32 {
-        let bulge = (1.0 - at.length_squared()).max(0.0).sqrt();
-        canvas.open(pixel, self.depth - (bulge + SINK) * self.reach, SINK * self.reach)
+        canvas.open(pixel, self.depth - (bulge(at) + SINK) * self.reach, SINK * self.reach)
     }
 }

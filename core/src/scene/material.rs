@@ -37,7 +37,8 @@ pub struct Material {
     pub texture: Option<String>,
     /// The diameter particles are drawn with \[m\]; zero: that of their radius, or of points one that suits the picture.
     pub size: f32,
-    /// How particles are drawn, from 0, a lit ball, to 1, a glow.
+    /// How particles are drawn, from 0, a lit ball, to 1, a glow. Balls are as bright however strong the lights are, so that they are seen, and have their
+    /// colour where these are not white.
     pub glow: f32,
     /// The picture particles are drawn with; without one they are balls or glows.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]

@@ -50,3 +50,20 @@ fn a_glow_fades_in_fog_and_darkens_nothing() {
         }
     }
 }
+
+/// A white ball has the colour of the lights, as far as their light is not white.
+#[test]
+fn a_ball_is_lit_in_the_color_of_the_lights_and_is_seen_without() {
+    let lit = |color: Vec3, ball: [u8; 3]| {
+        let lights = vec![Light::Directional { color, direction: Vec3::NEG_Z }];
+        let stage = Stage { lights, ..stage(vec![]) };
+        middle(&frame(&stage, &[Dot { size: 0.6, solid: true, ..dot(Vec3::NEG_Z * 3.0, ball) }], &[]))
+    };
+    let white = lit(Vec3::ONE, [255; 3]);
+    assert_eq!(white, lit(Vec3::splat(0.3), [255; 3]), "light of any strength");
+    let [red, green, blue] = lit(Vec3::ZERO, [255; 3]);
+    assert!(red == green && green == blue && red > 100, "and none: {red} {green} {blue}");
+    let [red, green, blue] = lit(Vec3::X, [255; 3]);
+    assert!(red == white[0] && green == blue && green < red - 60, "{red} {green} {blue}");
+    assert!(lit(Vec3::X, [0, 255, 0])[1] > 80, "a ball is there to be seen");
+}
