@@ -40,6 +40,8 @@ pub(super) struct Skin {
     pub(super) specular: Vec3,
     pub(super) shininess: f32,
     pub(super) opacity: f32,
+    /// True if it is of a surface with an edge, such as a disc, which has an inside nowhere.
+    pub(super) open: bool,
     pub(super) role: Role,
 }
 
@@ -64,6 +66,7 @@ impl Model {
         for (_, piece) in pieces {
             let role = if piece.endless { Role::Endless } else { Role::Solid };
             let skin = model.skin(&piece.material, stage.ambient, role);
+            model.skins[skin].open = !piece.surface.is_closed();
             let seen = piece.surface.transformed(lens.turn, lens.shift());
             let lifted = |place: Vec3| place * (1.0 - piece.lift / Lens::depth(place).max(2.0 * piece.lift));
             let lifted = |corners: [Vec3; 3]| if piece.lift > 0.0 { corners.map(lifted) } else { corners };
@@ -91,6 +94,7 @@ impl Model {
             // Without an exponent every place would be all highlight.
             shininess: if material.shininess >= 1.0 { material.shininess } else { 1.0 },
             opacity: if material.opacity >= 0.0 { material.opacity.min(1.0) } else { 1.0 },
+            open: false,
             role,
         });
         self.skins.len() - 1

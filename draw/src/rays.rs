@@ -1,7 +1,7 @@
 //! Looking along straight lines through the scene: for shadows, and for the ground under a dot.
 
 use super::camera::Lens;
-use super::model::{Facet, Model, Role};
+use super::model::{Facet, Model, Role, Skin};
 use glam::{Mat3, Vec2, Vec3};
 use pointmass::rays::{Aabb8, IndexBuf, Pieces, Structure, Visitor};
 use pointmass::shape::{self, Aabb, Segment};
@@ -29,6 +29,8 @@ struct Wall {
     sides: [Vec3; 2],
     flat: Vec3,
     opacity: f32,
+    /// True if light is stopped from behind as well.
+    open: bool,
 }
 
 /// A place where a ray meets a wall.
@@ -44,7 +46,7 @@ impl Rays {
         let walls = |role| {
             let facets = model.facets.iter().map(|facet| (facet, &model.skins[facet.skin]));
             let walls = facets.filter(move |(_, skin)| skin.role == role);
-            walls.map(|(facet, skin)| Wall::new(facet, upright, skin.opacity)).collect::<Vec<_>>()
+            walls.map(|(facet, skin)| Wall::new(facet, upright, skin)).collect::<Vec<_>>()
         };
         let (endless, solid) = (walls(Role::Endless), Walls::new(walls(Role::Solid)));
         let index = IndexBuf::new(Structure::Bvh, &solid);
@@ -63,7 +65,7 @@ impl Rays {
     /// The share of a lamp that can be seen from a place. The lamp is a round disc `reach` away whose
     /// radius is `width` times as much, looked at in a pattern that is turned by `turn`.
     ///
-    /// Only walls entered from outside count. For solids that changes nothing, and a room may be
+    /// Of what is closed only walls entered from outside count. For solids that changes nothing, and a room may be
     /// lit by a lamp outside it, which is how people light the rooms they want to look into.
     pub(super) fn seen(&self, from: Vec3, towards: Vec3, width: f32, reach: f32, turn: f32) -> f32 {
         let (from, towards) = (self.upright * from, self.upright * towards);
@@ -159,7 +161,7 @@ impl<const N: usize> Visitor for Light<'_, N> {
 
     fn visit(&mut self, wall: usize) -> ControlFlow<()> {
         let (wall, packet) = (&self.walls[wall], &mut self.packet);
-        if wall.flat.dot(packet.from - wall.corner) > 0.0 {
+        if wall.open || wall.flat.dot(packet.from - wall.corner) > 0.0 {
             let distances = wall.distances(packet);
             for ((distance, reach), passing) in distances.iter().zip(&mut packet.reach).zip(&mut self.passing) {
                 *passing *= if distance < reach { 1.0 - wall.opacity } else { 1.0 };
@@ -262,9 +264,10 @@ fn spread<const N: usize>(turn: f32) -> [Vec2; N] {
 }
 
 impl Wall {
-    fn new(facet: &Facet, upright: Mat3, opacity: f32) -> Self {
+    fn new(facet: &Facet, upright: Mat3, skin: &Skin) -> Self {
         let [a, b, c] = facet.corners.map(|corner| upright * corner.place);
-        Self { corner: a, sides: [b - a, c - a], flat: upright * facet.flat, opacity }
+        let Skin { opacity, open, .. } = *skin;
+        Self { corner: a, sides: [b - a, c - a], flat: upright * facet.flat, opacity, open }
     }
 
     fn corners(&self) -> [Vec3; 3] {

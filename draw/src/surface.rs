@@ -47,6 +47,15 @@ impl Surface {
         })
     }
 
+    /// Tells whether it has an inside: the normals of a closed surface, by its areas, are nothing in all.
+    pub(super) fn is_closed(&self) -> bool {
+        /// The share of the area that rounding, and a hole nobody sees, leave.
+        const LEAK: f32 = 1e-3;
+        let areas = self.corners().map(|([a, b, c], ..)| (b - a).cross(c - a));
+        let (sum, all) = areas.fold((Vec3::ZERO, 0.0), |(sum, all), area| (sum + area, all + area.length()));
+        sum.length() <= LEAK * all
+    }
+
     /// The area of all triangles together.
     pub fn area(&self) -> f32 {
         self.corners().map(|([a, b, c], ..)| 0.5 * (b - a).cross(c - a).length()).sum()

@@ -67,3 +67,38 @@ fn a_ball_is_lit_in_the_color_of_the_lights_and_is_seen_without() {
     assert!(red == white[0] && green == blue && green < red - 60, "{red} {green} {blue}");
     assert!(lit(Vec3::X, [0, 255, 0])[1] > 80, "a ball is there to be seen");
 }
+
+#[test]
+fn what_has_an_edge_casts_shadows_from_both_sides() {
+    let white = Material { ambient: Vec3::ZERO, ..Material::default() };
+    let piece = |surface| Piece { surface, material: white, endless: false, lift: 0.0 };
+    let ground = piece(shapes::plane(Vec3::NEG_Y, Vec3::Y, 20.0));
+    let sun = Light::Directional { color: Vec3::ONE, direction: Vec3::NEG_Y };
+    let lit = |more: Option<Surface>| {
+        let pieces = std::iter::once(ground.clone()).chain(more.map(piece)).collect();
+        let stage = Stage { lights: vec![sun], ..stage(pieces) };
+        let lens = camera::Lens::new(&stage.camera, WIDTH as usize, HEIGHT as usize);
+        let at = lens.project(lens.view(Vec3::new(0.0, -1.0, -4.0)));
+        frame(&stage, &[], &[])[(at.x as u32, at.y as u32)].0[0]
+    };
+    let corner = |x: f32, z: f32| Vec3::new(x, 2.0, -4.0 + z);
+    let triangle = |order: [u32; 3]| shapes::mesh(&[corner(-1.0, 1.0), corner(1.0, 1.0), corner(0.0, -1.0)], &[order]);
+    let open = lit(None);
+    for (name, surface) in [
+        ("a disc from above", shapes::disc(corner(0.0, 0.0), Vec3::Y, 0.6)),
+        ("a disc from below", shapes::disc(corner(0.0, 0.0), Vec3::NEG_Y, 0.6)),
+        ("a triangle", triangle([0, 1, 2])),
+        ("the same from below", triangle([0, 2, 1])),
+        ("a box", shapes::cuboid(corner(0.0, 0.0), Vec3::splat(0.8))),
+    ] {
+        let shaded = lit(Some(surface));
+        assert!(shaded < open / 2 + 20, "{name}: {shaded}, {open} in the open");
+    }
+    // A room is lit from outside.
+    assert_eq!(lit(Some(shapes::cuboid(Vec3::new(0.0, 0.0, -4.0), Vec3::splat(9.0)))), open);
+    assert!(
+        [shapes::cylinder(Vec3::ONE, 0.3, 2.0), shapes::cone(Vec3::ONE, 0.3, 2.0), shapes::sphere(Vec3::ONE, 0.1)]
+            .iter()
+            .all(Surface::is_closed)
+    );
+}
