@@ -97,9 +97,8 @@ impl Renderer {
         let Self { eye, pictures, .. } = self;
         let sprites = moving.dots.iter().filter_map(|dot| Sprite::new(dot, moving.exposed, eye));
         let boards = moving.billboards.iter().filter_map(|board| Placed::new(board, pictures, eye));
-        let lines = moving.segments.iter().map(|line| (line, false));
-        let lines = lines.chain(moving.ribbons.iter().map(|line| (line, true)));
-        let wires = lines.filter_map(|(line, joined)| Wire::new(line, joined, eye)).map(Mover::Wire);
+        let lines = moving.segments.iter().filter_map(|line| Wire::new(line, false, eye));
+        let wires = lines.chain(Wire::ribbons(moving.ribbons, eye)).map(Mover::Wire);
         wires.chain(sprites.map(Mover::Sprite)).chain(boards.map(Mover::Billboard)).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! Moving lines in the picture, such as springs, and ribbons made of them, such as trails.
 
-use super::brush::Stroke;
+use super::brush::{Stroke, Touch};
 use super::camera::Lens;
 use super::canvas::Canvas;
 use super::color::CODEC;
@@ -21,8 +21,10 @@ pub(super) struct Wire {
     /// How far away its farther end is, so that a dot on either end lies on top.
     pub(super) depth: f32,
     ends: [End; 2],
-    /// True if another line goes on from either end, so that it has none.
+    /// True if it is a part of a ribbon, whose ends are cut off straight.
     joined: bool,
+    /// The axes of the parts before and behind it that begin and end where it ends and begins, in the picture.
+    beside: [Option<[Vec2; 2]>; 2],
 }
 
 /// An end of a line.
@@ -51,18 +53,31 @@ impl Wire {
         let share = |place: Vec3| place.distance(a) / a.distance(b).max(f32::MIN_POSITIVE);
         let ends = [from, to].map(|place| End::new(line, place, share(place), eye));
         let is_seen = ends.iter().any(|end| end.opacity > 0.0);
-        is_seen.then_some(Self { depth: Lens::depth(from).max(Lens::depth(to)), ends, joined })
+        let depth = Lens::depth(from).max(Lens::depth(to));
+        is_seen.then_some(Self { depth, ends, joined, beside: [None; 2] })
+    }
+
+    /// The parts of ribbons. Where one goes on from where another ends, both know of each other.
+    pub(super) fn ribbons(lines: &[Line], eye: &Eye) -> Vec<Self> {
+        let mut parts: Vec<_> = lines.iter().map(|line| Self::new(line, true, eye)).collect();
+        for (number, two) in lines.windows(2).enumerate() {
+            if let ([Some(one), Some(other)], true) = (&mut parts[number..][..2], two[0].ends[1] == two[1].ends[0]) {
+                (one.beside[1], other.beside[0]) = (Some(other.axis()), Some(one.axis()));
+            }
+        }
+        parts.into_iter().flatten().collect()
+    }
+
+    fn axis(&self) -> [Vec2; 2] {
+        self.ends.map(|end| end.at)
     }
 
     /// Paints the line.
     pub(super) fn paint(&self, canvas: &mut Canvas) {
         let [a, b] = self.ends;
-        let way = b.at - a.at;
         let stroke = Stroke { from: a.at, to: b.at, radius: a.radius.max(b.radius) + 0.5 };
         stroke.each_pixel(canvas.width, canvas.height, |touch| {
-            // Joined lines have butt ends, each pixel along them belonging to one, so that nothing is painted twice.
-            let is_next = touch.along >= 1.0 || touch.along <= 0.0 && touch.offset.dot(way) < 0.0;
-            if self.joined && is_next {
+            if self.joined && !self.owns(&touch, canvas.width) {
                 return;
             }
             let between = |of: fn(&End) -> f32| of(&a) + touch.along * (of(&b) - of(&a));
@@ -73,6 +88,29 @@ impl Wire {
             canvas.cover(touch.pixel, a.color.lerp(b.color, touch.along), opacity * covered * open);
         });
     }
+}
+
+impl Wire {
+    /// Tells whether a pixel is a part of a ribbon's own, so that nothing is painted twice: it is nearer to it than to the part before, and no
+    /// farther than from the one behind. Where none goes on the ribbon ends straight; where one does, bends are round.
+    fn owns(&self, touch: &Touch, width: usize) -> bool {
+        let [a, b] = self.axis();
+        let place = Vec2::new((touch.pixel % width) as f32, (touch.pixel / width) as f32) + 0.5;
+        let own = apart(place, [a, b]);
+        let [before, behind] = self.beside;
+        let begins = match before {
+            Some(axis) => own < apart(place, axis),
+            None => touch.along > 0.0 || touch.offset.dot(b - a) >= 0.0,
+        };
+        begins && behind.map_or(touch.along < 1.0, |axis| own <= apart(place, axis))
+    }
+}
+
+/// The square of the distance of a place from a line between two ends.
+fn apart(place: Vec2, [a, b]: [Vec2; 2]) -> f32 {
+    let (out, way) = (place - a, b - a);
+    let along = (out.dot(way) / way.length_squared().max(1e-12)).clamp(0.0, 1.0);
+    (out - along * way).length_squared()
 }
 
 impl End {

@@ -426,6 +426,17 @@ fn a_vector_of_materials_is_a_list() {
     assert_eq!(scene.materials.get(2), None);
 }
 
+/// The lines of a trail join, wherever it bends.
+#[test]
+fn a_trail_has_no_gaps() {
+    let place = Vec3::new(-0.6, -0.3, 7.0);
+    let start = [Particle { velocity: Vec3::new(0.6, 4.2, 0.1), position: place, ..Particle::REST }];
+    let gravity = Gravity { acceleration: Vec3::new(0.0, -9.81, 0.3) };
+    let scene = Scene { start: &start, forces: &gravity, ..Scene::EMPTY };
+    let lines = trails_at(&scene, TrailMaterial { seconds: 0.5, width: 0.1 }, 50, 60, 40);
+    assert!(lines.len() > 20 && lines.windows(2).all(|two| two[0].ends[1] == two[1].ends[0]), "{lines:?}");
+}
+
 /// A body that loses particles is drawn where those that are left have it, as large as it is, however few they are.
 #[test]
 fn a_body_that_loses_particles_stays_as_it_is() {

@@ -181,8 +181,9 @@ impl Pen {
         if !(newer < 1.0) {
             return None;
         }
-        let share = if older > 1.0 { (1.0 - newer) / (older - newer) } else { 1.0 };
-        let ends = [from.place, from.place + (to.place - from.place) * share];
+        let cut = || from.place + (to.place - from.place) * ((1.0 - newer) / (older - newer));
+        // The next line begins where this one ends, to the bit.
+        let ends = [from.place, if older > 1.0 { cut() } else { to.place }];
         let left = [1.0 - newer, 1.0 - min(older, 1.0)];
         let faded = |left: f32| {
             let [red, green, blue, alpha] = self.color;

@@ -4,6 +4,8 @@ use super::super::*;
 use super::air::foggy;
 use super::{HEIGHT, WIDTH, dot, frame, linear, middle, stage};
 use glam::Vec3;
+use image::RgbImage;
+use pointmass::draw::Line;
 
 #[test]
 fn a_glow_on_its_way_is_whole_where_it_is_and_its_trace_is_behind() {
@@ -47,6 +49,59 @@ fn a_glow_fades_in_fog_and_darkens_nothing() {
                     assert!(is_between, "{density}: {foggy:?}, {clear:?} in clear air, {empty:?} alone");
                 }
             }
+        }
+    }
+}
+
+/// The ribbon through some places, of one width and opacity.
+fn ribbon(places: &[Vec3], width: f32, opacity: u8) -> RgbImage {
+    let line = |ends: &[Vec3]| Line { ends: [ends[0], ends[1]], widths: [width; 2], colors: [[255, 0, 0, opacity]; 2] };
+    let ribbons: Vec<_> = places.windows(2).map(line).collect();
+    let black = Stage { background: Background::Plain(Vec3::ZERO), ..stage(vec![]) };
+    Renderer::new(&black, WIDTH, HEIGHT).frame(&Moving { ribbons: &ribbons, ..Moving::default() })
+}
+
+#[test]
+fn a_ribbon_has_neither_cracks_nor_seams_where_it_bends() {
+    let arc = |parts: u16, turn: f32, radius: f32| {
+        let place = |i: u16| {
+            let (sin, cos) = (turn * f32::from(i) / f32::from(parts)).sin_cos();
+            Vec3::new(radius * cos, radius * sin - 0.2, -3.0)
+        };
+        (0..=parts).map(place).collect::<Vec<_>>()
+    };
+    let corner = |x: f32, y: f32| vec![Vec3::new(-0.5, 0.0, -3.0), Vec3::new(0.0, 0.0, -3.0), Vec3::new(x, y, -3.0)];
+    let stage = Stage { background: Background::Plain(Vec3::ZERO), ..stage(vec![]) };
+    let lens = camera::Lens::new(&stage.camera, WIDTH as usize, HEIGHT as usize);
+    let scale = lens.pixels_per_metre(3.0);
+    for (places, width) in [
+        (arc(4, 2.0, 0.4), 0.2),
+        (arc(9, 3.0, 0.4), 0.2),
+        (arc(40, 3.0, 0.4), 0.3),
+        (corner(0.0, 0.5), 0.2),
+        (corner(-0.4, 0.3), 0.2),
+        (corner(-0.5, 0.05), 0.15),
+    ] {
+        let image = ribbon(&places, width, 128);
+        let seen = |pixel: &image::Rgb<u8>| linear(pixel[0]);
+        let whole = 128.0 / 255.0;
+        for (x, y, pixel) in image.enumerate_pixels() {
+            // Where the middle of the pixel is, and how far that is from the middle of the ribbon.
+            let at = glam::Vec2::new(x as f32 + 0.5 - 0.5 * WIDTH as f32, 0.5 * HEIGHT as f32 - y as f32 - 0.5) / scale;
+            let part = |ends: &[Vec3]| {
+                let [a, b] = [ends[0].truncate(), ends[1].truncate()];
+                let along = ((at - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+                (at.distance(a + along * (b - a)), along)
+            };
+            let parts: Vec<_> = places.windows(2).map(part).collect();
+            let nearest = parts.iter().map(|part| part.0).fold(f32::INFINITY, f32::min);
+            // The ends of the whole are cut off straight.
+            let is_end = parts.first().is_some_and(|&(apart, along)| apart == nearest && along == 0.0)
+                || parts.last().is_some_and(|&(apart, along)| apart == nearest && along == 1.0);
+            if nearest < 0.5 * width - 1.0 / scale && !is_end {
+                assert!((seen(pixel) - whole).abs() < 0.03, "{} at {at}, {nearest} of {width} off", seen(pixel));
+            }
+            assert!(seen(pixel) < whole + 0.03, "painted twice at {at}: {}", seen(pixel));
         }
     }
 }
