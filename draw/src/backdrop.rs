@@ -1,8 +1,10 @@
 //! The picture of everything that stands still.
 
+use super::air::Haze;
 use super::camera::Lens;
 use super::clip::Frustum;
 use super::model::{Facet, Model};
+use super::panes::Panes;
 use super::raster::{Band, SAMPLES, Sample, Triangle};
 use super::shade::Shader;
 use glam::{Vec2, Vec3};
@@ -18,8 +20,11 @@ pub(super) const DEPTHS: usize = 4;
 #[derive(Debug)]
 pub(super) struct Backdrop {
     pub(super) colors: Vec<Vec3>,
+    width: usize,
     /// The depths of a few samples of each pixel; infinite where there is nothing.
     pub(super) depths: Vec<[f32; DEPTHS]>,
+    /// What lets light through, for each band of rows; no bands where there is nothing of that.
+    panes: Vec<Panes>,
 }
 
 impl Backdrop {
@@ -34,22 +39,44 @@ impl Backdrop {
         let visible = in_order(lens, model);
         let size = (BAND * lens.width).max(1);
         let bands = colors.par_chunks_mut(size).zip(depths.par_chunks_mut(size)).enumerate();
-        bands.for_each(|(number, (colors, depths))| {
+        let panes = bands.map(|(number, (colors, depths))| {
             let rows = colors.len() / lens.width;
             let sky = |x, y| shader.eye.air.sky.at(Vec2::new(x as f32, y as f32) + 0.5);
+            let mut panes = Panes::default();
             let mut band = Band::new(BAND * number, rows, lens.width, sky);
             let opaque = visible.iter().filter(|(facet, _)| model.skins[facet.skin].opacity >= 1.0);
             opaque.for_each(|(_, triangle)| band.hide(triangle));
             for (facet, triangle) in &visible {
                 let skin = &model.skins[facet.skin];
-                band.paint(triangle, skin.opacity, |part| shader.color(facet, skin, part));
+                band.paint(triangle, skin.opacity, |part| {
+                    let color = shader.color(facet, skin, part);
+                    if skin.opacity < 1.0 {
+                        let pixel = (part.y - BAND * number) * lens.width + part.x;
+                        panes.add(pixel, &part, (facet.skin, skin.opacity), color);
+                    }
+                    color
+                });
             }
             for ((color, depth), samples) in colors.iter_mut().zip(depths).zip(&band.samples) {
                 *color = mean(samples);
                 *depth = std::array::from_fn(|at| samples[at].depth);
             }
+            panes.sorted()
         });
-        Self { colors, depths }
+        let mut panes: Vec<_> = panes.collect();
+        if panes.iter().all(Panes::is_empty) {
+            panes.clear();
+        }
+        Self { colors, width: lens.width, depths, panes }
+    }
+
+    /// What the clear things before a depth do to light from there on its way through a pixel.
+    pub(super) fn before(&self, pixel: usize, depth: f32, softness: f32) -> Haze {
+        if self.panes.is_empty() {
+            return Haze::NONE;
+        }
+        let size = BAND * self.width;
+        self.panes[pixel / size].before(pixel % size, depth, softness)
     }
 }
 

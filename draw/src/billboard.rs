@@ -99,16 +99,20 @@ impl<'a> Placed<'a> {
                 if texel.w > 0.0 || texel != Vec4::ZERO {
                     let pixel = y * canvas.width + x;
                     let share = self.opacity * within.x * within.y * canvas.open(pixel, depth, 2.0 * softness);
-                    self.lay(canvas, pixel, texel, share);
+                    let panes = canvas.before(pixel, depth, 2.0 * softness);
+                    self.lay(canvas, pixel, (texel, panes), share);
                 }
             }
         }
     }
 
-    /// Lays a share of a texel over a pixel.
-    fn lay(&self, canvas: &mut Canvas, pixel: usize, texel: Vec4, share: f32) {
-        let (color, opacity) = (texel.truncate() * self.color * self.haze.clear, texel.w);
-        let color = if self.blend == Blend::Additive { color } else { color + opacity * self.haze.light };
+    /// Lays a share of a texel, which is seen through some panes, over a pixel.
+    fn lay(&self, canvas: &mut Canvas, pixel: usize, (texel, panes): (Vec4, Haze), share: f32) {
+        let (color, opacity) = (texel.truncate() * self.color, texel.w);
+        let color = [self.haze, panes].into_iter().fold(color, |color, haze| {
+            let light = if self.blend == Blend::Additive { Vec3::ZERO } else { opacity * haze.light };
+            color * haze.clear + light
+        });
         match self.blend {
             Blend::Alpha | Blend::Premultiplied => canvas.over(pixel, color * share, opacity * share),
             Blend::Additive => canvas.add(pixel, color * share),

@@ -1,5 +1,6 @@
 //! The picture while it is being painted.
 
+use super::air::Haze;
 use super::backdrop::{Backdrop, DEPTHS};
 use super::bloom::Bloom;
 use super::color::luminance;
@@ -10,7 +11,7 @@ use glam::Vec3;
 pub(super) struct Canvas<'a> {
     pub(super) width: usize,
     pub(super) height: usize,
-    depths: &'a [[f32; DEPTHS]],
+    backdrop: &'a Backdrop,
     pixels: Vec<Pixel>,
 }
 
@@ -62,13 +63,13 @@ impl<'a> Canvas<'a> {
     pub(super) fn new(backdrop: &'a Backdrop, width: usize, height: usize) -> Self {
         let blank = |&color: &Vec3| Pixel { color, light: Light::default() };
         let pixels = backdrop.colors.iter().map(blank).collect();
-        Self { width, height, depths: &backdrop.depths, pixels }
+        Self { width, height, backdrop, pixels }
     }
 
     /// How much of a pixel is open to something at a depth: 1 as long as the backdrop is behind
     /// `depth`, falling to 0 where the backdrop is `softness` in front of it.
     pub(super) fn open(&self, pixel: usize, depth: f32, softness: f32) -> f32 {
-        let depths = &self.depths[pixel];
+        let depths = &self.backdrop.depths[pixel];
         let nearer = |a: f32, b: f32| if a < b { a } else { b };
         let [a, b, c, d] = *depths;
         if nearer(nearer(a, b), nearer(c, d)) >= depth {
@@ -78,9 +79,15 @@ impl<'a> Canvas<'a> {
         depths.iter().map(share).sum::<f32>() / DEPTHS as f32
     }
 
+    /// What the clear things before a depth do to light from there: nothing where they are behind `depth`, and all where they are `softness`
+    /// in front of it. Of a colour c that is laid over what is there, less comes through and theirs is added, as it has been to what is there.
+    pub(super) fn before(&self, pixel: usize, depth: f32, softness: f32) -> Haze {
+        self.backdrop.before(pixel, depth, softness)
+    }
+
     /// The share of a pixel's samples whose depth is about `depth`.
     pub(super) fn lies_at(&self, pixel: usize, depth: f32, tolerance: f32) -> f32 {
-        let near = self.depths[pixel].iter().filter(|&&wall| (wall - depth).abs() < tolerance);
+        let near = self.backdrop.depths[pixel].iter().filter(|&&wall| (wall - depth).abs() < tolerance);
         near.count() as f32 / DEPTHS as f32
     }
 

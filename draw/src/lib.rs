@@ -28,6 +28,7 @@ mod contact;
 mod eye;
 mod lamp;
 mod model;
+mod panes;
 mod picture;
 mod raster;
 mod rays;

@@ -53,6 +53,8 @@ pub(super) struct Fragment {
     pub(super) x: usize,
     pub(super) y: usize,
     pub(super) at: Vertex,
+    /// The samples of the pixel that it has, a bit each.
+    pub(super) samples: u8,
 }
 
 impl Triangle {
@@ -139,7 +141,8 @@ impl Band {
             if count > 0.0 {
                 // The middle of the samples that hit is always inside the triangle.
                 let at = triangle.vertex(sum.map(|weight| weight / count));
-                let color = shade(Fragment { x, y, at });
+                let covered = hits.iter().rev().fold(0, |bits, &hit| bits << 1 | u8::from(hit));
+                let color = shade(Fragment { x, y, at, samples: covered });
                 for (sample, _) in samples.iter_mut().zip(hits).filter(|(_, hit)| *hit) {
                     sample.color = sample.color.lerp(color, opacity);
                 }

@@ -85,7 +85,10 @@ impl Wire {
             let depth = 1.0 / between(|end| end.nearness);
             let open = canvas.open(touch.pixel, (1.0 - LIFT) * depth, LIFT * depth);
             let opacity = between(|end| end.opacity);
-            canvas.cover(touch.pixel, a.color.lerp(b.color, touch.along), opacity * covered * open);
+            let color = canvas
+                .before(touch.pixel, (1.0 - LIFT) * depth, LIFT * depth)
+                .through(a.color.lerp(b.color, touch.along));
+            canvas.cover(touch.pixel, color, opacity * covered * open);
         });
     }
 }

@@ -187,7 +187,8 @@ impl Sprite {
             let radius = self.radius * (0.3 + 0.6 * touch.along);
             let covered = (radius + 0.5 - touch.offset.length()).clamp(0.0, 1.0);
             let share = opacity * touch.along * covered * self.open(canvas, touch.pixel, touch.along);
-            canvas.cover(touch.pixel, self.haze.through(self.color), share);
+            let panes = self.panes(canvas, &touch);
+            canvas.cover(touch.pixel, panes.through(self.haze.through(self.color)), share);
         });
     }
 
@@ -209,7 +210,12 @@ impl Sprite {
                 let at = touch.offset / self.radius;
                 let color = if roundness > 0.0 { self.color.lerp(self.ball(at, &key), roundness) } else { self.color };
                 let share = share * self.thickness(at, roundness);
-                canvas.cover(touch.pixel, self.haze.through(color), share);
+                let panes = if self.solid {
+                    canvas.before(touch.pixel, self.depth - bulge(at) * self.reach, SINK * self.reach)
+                } else {
+                    self.panes(canvas, &touch)
+                };
+                canvas.cover(touch.pixel, panes.through(self.haze.through(color)), share);
             }
         });
     }
@@ -252,8 +258,7 @@ impl Sprite {
                 fall(out(touch.offset))
             };
             let share = strength * light * self.open(canvas, touch.pixel, touch.along);
-            canvas.shine(touch.pixel, self.color, share, self.haze.clear);
-            shed += share;
+            shed += self.shed(canvas, &touch, share);
         });
         bloom.shine(self.tail.lerp(self.head, 0.7), BLOOM * shed * self.haze.clear * self.color);
     }
@@ -284,7 +289,8 @@ impl Sprite {
                 };
                 let ball = || 0.5 * (face(-0.577_350_3) + face(0.577_350_3));
                 let color = if roundness > 0.0 { self.color.lerp(ball(), roundness) } else { self.color };
-                canvas.cover(touch.pixel, self.haze.through(color), share);
+                let panes = self.panes(canvas, &touch);
+                canvas.cover(touch.pixel, panes.through(self.haze.through(color)), share);
             }
         });
     }
@@ -312,8 +318,7 @@ impl Sprite {
             };
             let mean = 0.5 * (to - from) * GAUSS.into_iter().map(light).sum::<f32>();
             let share = strength * mean * self.open(canvas, touch.pixel, touch.along);
-            canvas.shine(touch.pixel, self.color, share, self.haze.clear);
-            shed += share;
+            shed += self.shed(canvas, &touch, share);
         });
         bloom.shine(self.tail.midpoint(self.head), BLOOM * shed * self.haze.clear * self.color);
     }
@@ -322,10 +327,26 @@ impl Sprite {
         Stroke { from: self.tail, to: self.head, radius: self.radius + wider }
     }
 
+    /// Sheds light on a pixel, as far as air and what is clear let it through; returns what the latter does.
+    fn shed(&self, canvas: &mut Canvas, touch: &Touch, share: f32) -> f32 {
+        let clear = self.panes(canvas, touch).clear;
+        canvas.shine(touch.pixel, self.color, share, self.haze.clear * clear);
+        share * clear
+    }
+
+    fn depth_at(&self, along: f32) -> f32 {
+        self.tail_depth + along * (self.depth - self.tail_depth)
+    }
+
+    /// The clear things before a place along its streak. What lies on glass is before it.
+    fn panes(&self, canvas: &Canvas, touch: &Touch) -> Haze {
+        canvas.before(touch.pixel, self.depth_at(touch.along), 0.5 * self.reach)
+    }
+
     /// How much of a pixel is open to the dot at a place along its streak. Dots that lie on a
     /// surface are half in it, and yet should be seen whole; the more so the more they glow.
     fn open(&self, canvas: &Canvas, pixel: usize, along: f32) -> f32 {
-        let depth = self.tail_depth + along * (self.depth - self.tail_depth);
+        let depth = self.depth_at(along);
         canvas.open(pixel, depth - (1.5 + 2.5 * self.glow) * self.reach, self.reach)
     }
 

@@ -24,7 +24,7 @@ pub struct Material {
     pub diffuse: [f32; 3],
     /// Reflected in highlights.
     pub specular: [f32; 3],
-    /// Let through.
+    /// Let through: the more of it, the clearer, and where it is zero opaque. What is behind, particles as well, is seen through it without refraction.
     pub transmission: [f32; 3],
     /// Emitted; the colour of particles whose diffuse colour is black.
     pub emission: [f32; 3],

@@ -2,10 +2,11 @@
 
 use super::super::*;
 use super::air::foggy;
-use super::{HEIGHT, WIDTH, dot, frame, linear, middle, stage};
+use super::{HEIGHT, WIDTH, board, boards, dot, frame, glowing, linear, middle, plain, stage, wall};
 use glam::Vec3;
 use image::RgbImage;
 use pointmass::draw::Line;
+use pointmass::material::Blend;
 
 #[test]
 fn a_glow_on_its_way_is_whole_where_it_is_and_its_trace_is_behind() {
@@ -49,6 +50,64 @@ fn a_glow_fades_in_fog_and_darkens_nothing() {
                     assert!(is_between, "{density}: {foggy:?}, {clear:?} in clear air, {empty:?} alone");
                 }
             }
+        }
+    }
+}
+
+/// What is seen through a pane is its colour times what that lets through, and the pane's own over it; before it, it is itself.
+#[test]
+fn a_pane_tints_what_is_behind_it_whatever_that_is() {
+    let pane = wall(2.0, glowing(Vec3::new(0.0, 0.0, 0.6), 0.6));
+    let (clear, glass) = (Stage { background: Background::Plain(Vec3::ZERO), ..plain([255; 4]) }, vec![pane]);
+    let glazed = Stage { pieces: glass, ..clear.clone() };
+    let alone = middle(&frame(&glazed, &[], &[])).map(linear);
+    let ways = |distance: f32, stage: &Stage| {
+        let place = Vec3::NEG_Z * distance;
+        let red = [230, 30, 0];
+        let ends = [place - Vec3::X * 0.2, place + Vec3::X * 0.2];
+        let line = Line { ends, widths: [0.2; 2], colors: [[230, 30, 0, 255]; 2] };
+        let ribbons = Moving { ribbons: &[line], ..Moving::default() };
+        let moved = Dot { previous: place - Vec3::X * 0.4, size: 0.3, ..dot(place, red) };
+        let exposed = Moving { exposed: true, dots: &[moved], ..Moving::default() };
+        [
+            ("ball", frame(stage, &[Dot { size: 0.3, solid: true, ..dot(place, red) }], &[])),
+            ("point", frame(stage, &[dot(place, red)], &[])),
+            ("line", frame(stage, &[], &[line])),
+            ("ribbon", Renderer::new(stage, WIDTH, HEIGHT).frame(&ribbons)),
+            ("sprite", boards(stage, &[board(place, 0.3, [230, 30, 0, 255], Blend::Alpha)])),
+            ("light", boards(stage, &[board(place, 0.3, [40, 30, 0, 255], Blend::Additive)])),
+            ("way", Renderer::new(stage, WIDTH, HEIGHT).frame(&exposed)),
+            ("glow", frame(stage, &[Dot { glow: 1.0, size: 0.3, color: [230, 30, 0, 30], ..dot(place, red) }], &[])),
+        ]
+    };
+    for (distance, is_behind) in [(3.0, true), (1.5, false)] {
+        for ((kind, bare), (_, seen)) in ways(distance, &clear).into_iter().zip(ways(distance, &glazed)) {
+            let (bare, seen) = (middle(&bare).map(linear), middle(&seen).map(linear));
+            let through = if is_behind { 0.4 } else { 1.0 };
+            // Light of a ratio is bent a little where it adds up.
+            let tolerance = if matches!(kind, "light" | "glow") { 0.12 } else { 0.02 };
+            assert!((seen[0] - through * bare[0]).abs() <= tolerance * bare[0], "{kind}: {seen:?}, {bare:?} without");
+            if is_behind {
+                assert!((seen[2] - alone[2]).abs() < 0.05, "{kind}: {seen:?} and {alone:?}");
+            }
+        }
+    }
+}
+
+/// Both triangles of a pane, and the edge between them, let through as much.
+#[test]
+fn a_pane_is_one_layer_where_its_triangles_meet() {
+    let surface = shapes::plane(2.0 * Vec3::NEG_Z, Vec3::Z, 0.9);
+    let pane = Piece { surface, ..wall(2.0, glowing(Vec3::ZERO, 0.5)) };
+    let image = boards(
+        &Stage { pieces: vec![pane], ..plain([255; 4]) },
+        &[board(Vec3::NEG_Z * 4.0, 9.0, [200, 200, 200, 255], Blend::Alpha)],
+    );
+    let lens = camera::Lens::new(&Camera::default(), WIDTH as usize, HEIGHT as usize);
+    let (first, half) = (middle(&image), (0.85 * lens.pixels_per_metre(2.0)) as u32);
+    for (x, y, pixel) in image.enumerate_pixels() {
+        if x.abs_diff(WIDTH / 2) < half && y.abs_diff(HEIGHT / 2) < half {
+            assert!(pixel.0[0].abs_diff(first[0]) <= 1, "{pixel:?} at {x}, {y}, and {first:?}");
         }
     }
 }
