@@ -94,9 +94,17 @@ fn read(path: &Path, unknown: Unknown) -> Outcome<(scene::Reading, Source)> {
     }
     let scene = SceneFile::from_json(&name, &text)?;
     let remarks = SceneFile::former_names(&text).into_iter().chain(scene.remarks());
-    let remarks = remarks.map(|remark| format!("{name}:{remark}")).collect();
+    let remarks = remarks.chain(lost_textures(&scene, path)).map(|remark| format!("{name}:{remark}")).collect();
     let source = Source { name: name.into_owned(), json: Some(text) };
     Ok((scene::Reading { scene, warnings: Vec::new(), remarks }, source))
+}
+
+/// Remarks on textures that are not beside a scene.
+fn lost_textures(scene: &SceneFile, path: &Path) -> impl Iterator<Item = String> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let named = scene.materials.iter().enumerate().filter_map(|(i, material)| Some((i, material.texture.as_ref()?)));
+    let lost = named.filter(move |(_, texture)| !folder.join(texture).is_file());
+    lost.map(|(i, texture)| format!("materials[{i}].texture: there is no texture file '{texture}'"))
 }
 
 /// How to go on where a command is unknown.

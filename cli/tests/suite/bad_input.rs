@@ -118,7 +118,10 @@ fn scn_that_is_wrong() {
 #[test]
 fn json_that_is_wrong() {
     let sphere = r#""shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}"#;
-    let emitter = |rest: &str| format!(r#"{{"emitters": [{{{sphere}, {rest}}}]}}"#);
+    let emitter = |rest: &str| {
+        let born = if rest.contains("rate") || rest.contains("burst") { "" } else { r#""rate": 1, "# };
+        format!(r#"{{"emitters": [{{{sphere}, {born}{rest}}}]}}"#)
+    };
     let emitters = [
         ("\"rate\": -1", "a.json:emitters[0].rate: "),
         ("\"burst\": {\"count\": 1, \"every\": -1}", "a.json:emitters[0].burst.every: "),
@@ -312,19 +315,19 @@ fn balls_contacts_and_motion_that_are_wrong() {
     let cases = [
         (r#"{"particles": [{"radius": -0.1}]}"#.into(), "a.json:particles[0].radius: has to be zero or more, not -0.1"),
         (
-            format!(r#"{{"emitters": [{{{sphere}, "radius": {{"mean": 1, "half_width": 2}}}}]}}"#),
+            format!(r#"{{"emitters": [{{{sphere}, "rate": 1, "radius": {{"mean": 1, "half_width": 2}}}}]}}"#),
             "a.json:emitters[0].radius: must not be below zero, the half_width counted in",
         ),
         (
-            format!(r#"{{"emitters": [{{{sphere}, "fixed": true, "mass": -5}}]}}"#),
+            format!(r#"{{"emitters": [{{{sphere}, "rate": 1, "fixed": true, "mass": -5}}]}}"#),
             "a.json:emitters[0].mass: must not be below zero, the half_width counted in",
         ),
         (
-            format!(r#"{{"emitters": [{{{sphere}, "mass": {{"mean": 3e38, "half_width": 2e38}}}}]}}"#),
+            format!(r#"{{"emitters": [{{{sphere}, "rate": 1, "mass": {{"mean": 3e38, "half_width": 2e38}}}}]}}"#),
             "a.json:emitters[0].mass: 3e38 ± 2e38 goes beyond the range",
         ),
         (
-            format!(r#"{{"emitters": [{{{sphere}, "lifetime": {{"mean": -3e38, "half_width": -2e38}}}}]}}"#),
+            format!(r#"{{"emitters": [{{{sphere}, "rate": 1, "lifetime": {{"mean": -3e38, "half_width": -2e38}}}}]}}"#),
             "a.json:emitters[0].lifetime: -3e38 ± -2e38 goes beyond",
         ),
         (ball(r#""contacts": "impulse""#), "a.json:1:55: a name alone, where its settings should follow"),
@@ -363,7 +366,7 @@ fn groups_of_emitters_and_sinks_that_are_wrong() {
     let sphere = r#"{"sphere": {"center": [9, 0, 0], "radius": 1}}"#;
     let cone = r#"{"cone": {"center": [0, 0, 0], "radius": 1, "height": 1}}"#;
     let scene = |matrix: &str, kind: &str, shape: &str, group: u8| {
-        let pull = if kind == "sinks" { r#", "intensity": 1, "ca": 1, "la": 0, "qa": 0"# } else { "" };
+        let pull = if kind == "sinks" { r#", "intensity": 1, "ca": 1, "la": 0, "qa": 0"# } else { r#", "rate": 1"# };
         format!(r#"{{"groups": [{{"matrix": [{matrix}]}}], "{kind}": [{{"group": {group}, "shape": {shape}{pull}}}]}}"#)
     };
     let cases = [

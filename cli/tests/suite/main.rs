@@ -11,6 +11,7 @@ mod course;
 mod films;
 mod fuzz;
 mod lab;
+mod looks;
 mod onset;
 #[cfg(unix)]
 mod outputs;

@@ -70,7 +70,7 @@ fn direction() -> impl Strategy<Value = Vec3> {
 }
 
 fn color() -> impl Strategy<Value = [f32; 3]> {
-    prop_oneof![uniform3(0.0f32..=1.0), uniform3(number()), Just([0.0; 3])]
+    prop_oneof![uniform3(0.0f32..=1.0), uniform3(positive()), Just([0.0; 3])]
 }
 
 /// A file's name without blanks.
@@ -175,14 +175,10 @@ fn light() -> impl Strategy<Value = Light> {
 }
 
 fn camera() -> impl Strategy<Value = Camera> {
-    uniform4(uniform3(number())).prop_map(|[eye, towards, up, [xfov, near, far]]| Camera {
-        eye,
-        towards,
-        up,
-        xfov,
-        near,
-        far,
-        ..Camera::default()
+    let way = || uniform3(-1.0f32..1.0).prop_map(|[x, y, z]| [x, y + 1.5, z]);
+    let depths = (0.0f32..100.0, 0.1f32..1e6);
+    (uniform3(number()), way(), way(), 0.01f32..1.5, depths).prop_map(|(eye, towards, up, xfov, (near, reach))| {
+        Camera { eye, towards, up, xfov, near, far: near + reach, ..Camera::default() }
     })
 }
 

@@ -3,13 +3,12 @@
 use super::check_force::check_force;
 use super::check_shape::check_shape;
 use super::numbers::{Checked, above_zero, check_breaking, check_direction, finite, zero_or_more};
-use super::references::{MAX_GROUPS, MAX_MATERIALS};
+use super::references::MAX_GROUPS;
 use super::remarks::MOST_SUBSTEPS;
-use super::{Boxes, Cord, Fog, Light, Material, SceneError, SceneFile, Sky};
+use super::{Boxes, Cord, SceneError, SceneFile};
 use crate::constrain::ConstraintKind;
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::force::Spring;
-use crate::material::TrailMaterial;
 use crate::motion::{Motion, MotionBuf};
 use crate::particles::Particle;
 use crate::reap::ReaperKind;
@@ -247,32 +246,6 @@ impl SceneFile {
         }
         Ok(())
     }
-
-    fn check_look(&self) -> Checked {
-        if self.materials.len() > MAX_MATERIALS {
-            return Err(SceneError::value("materials", format!("a scene has at most {MAX_MATERIALS}")));
-        }
-        for (i, m) in self.materials.iter().enumerate() {
-            check_properties(&format!("materials[{i}]"), m)?;
-        }
-        for (i, light) in self.lights.iter().enumerate() {
-            check_light(&format!("lights[{i}]"), light)?;
-        }
-        if let Some(c) = &self.camera {
-            finite("camera", [c.eye, c.towards, c.up, [c.xfov, c.near, c.far]].as_flattened())?;
-            zero_or_more("camera.shutter", c.shutter.unwrap_or(0.0))?;
-        }
-        if let Some(Sky { zenith, horizon, ground }) = self.sky {
-            finite("sky", [zenith, horizon, ground.unwrap_or(horizon)].as_flattened())?;
-        }
-        if let Some(Fog { color, density, from }) = self.fog {
-            finite("fog.color", &color.unwrap_or_default())?;
-            zero_or_more("fog.density", density)?;
-            zero_or_more("fog.from", from)?;
-        }
-        finite("ambient", &self.ambient)?;
-        finite("background", &self.background)
-    }
 }
 
 /// Checks the numbers of a particle.
@@ -324,64 +297,6 @@ fn check_varied(at: &str, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) -
     }
     if !(radius.mean - radius.half_width.abs() >= 0.0) {
         return Err(SceneError::value(format!("{at}.radius"), "must not be below zero, the half_width counted in"));
-    }
-    Ok(())
-}
-
-/// Checks how particles of a material feel and look.
-fn check_properties(at: &str, m: &Material) -> Checked {
-    let colors = [m.ambient, m.diffuse, m.specular, m.transmission, m.emission];
-    finite(at, colors.as_flattened())?;
-    finite(at, &[m.shininess, m.refraction, m.size, m.glow])?;
-    if let Some((name, number, meant)) = m.contact.fault() {
-        let message = format!("{meant}, not {number}");
-        return Err(SceneError::value(format!("{at}.contact.{name}"), message));
-    }
-    if let Some(sprite) = &m.sprite {
-        sprite.check(&format!("{at}.sprite"))?;
-    }
-    if let Some(shape) = &m.shape {
-        let at = format!("{at}.shape");
-        if m.sprite.is_some() {
-            return Err(SceneError::value(at, "particles are drawn as a shape or with a sprite, not both"));
-        }
-        if matches!(shape.form, Shape::Plane(_) | Shape::Line(_)) {
-            return Err(SceneError::value(format!("{at}.form"), "a particle cannot be drawn as a plane or a line"));
-        }
-        check_shape(&format!("{at}.form"), &shape.form)?;
-    }
-    if let Some(TrailMaterial { seconds, width }) = m.trail {
-        let at = format!("{at}.trail");
-        if !(seconds > 0.0 && seconds.is_finite()) {
-            let message = format!("has to be above zero, in seconds, not {seconds}");
-            return Err(SceneError::value(format!("{at}.seconds"), message));
-        }
-        if !(0.0..f32::INFINITY).contains(&width) {
-            let message = format!("has to be zero or more, in metres, not {width}");
-            return Err(SceneError::value(format!("{at}.width"), message));
-        }
-    }
-    m.life.check(&format!("{at}.life"))
-}
-
-/// Checks a light.
-fn check_light(at: &str, light: &Light) -> Checked {
-    match light {
-        Light::Directional { color, direction } => finite(at, [*color, *direction].as_flattened())?,
-        Light::Point { color, position, attenuation } => {
-            finite(at, [*color, *position, *attenuation].as_flattened())?;
-        }
-        Light::Spot { color, position, direction, attenuation, cutoff, dropoff } => {
-            finite(at, [*color, *position, *direction, *attenuation].as_flattened())?;
-            finite(at, &[*cutoff, *dropoff])?;
-        }
-        Light::Area { color, position, direction, radius, attenuation } => {
-            finite(at, [*color, *position, *direction, *attenuation].as_flattened())?;
-            finite(at, &[*radius])?;
-            if *radius < 0.0 {
-                return Err(SceneError::value(at, format!("the radius has to be zero or more, not {radius}")));
-            }
-        }
     }
     Ok(())
 }

@@ -233,11 +233,11 @@ pub struct Camera {
     pub towards: [f32; 3],
     /// A direction that shall be up in the picture.
     pub up: [f32; 3],
-    /// Half the horizontal angle it sees \[rad\].
+    /// Half the horizontal angle it sees \[rad\], above zero and below π / 2.
     pub xfov: f32,
-    /// Nothing nearer is seen \[m\].
+    /// Nothing nearer is seen \[m\]; zero or more.
     pub near: f32,
-    /// Nothing farther is seen \[m\].
+    /// Nothing farther is seen \[m\]; more than `near`.
     pub far: f32,
     /// How long its shutter is open before the instant of a picture \[s\], at most as long as pictures lie apart; what moves is drawn
     /// along its way of that time. Without one, films draw particles as they are then, with faint traces behind them.

@@ -13,6 +13,8 @@ mod check;
 #[cfg(feature = "alloc")]
 mod check_force;
 #[cfg(feature = "alloc")]
+mod check_look;
+#[cfg(feature = "alloc")]
 mod check_room;
 #[cfg(feature = "alloc")]
 mod check_shape;
@@ -52,6 +54,8 @@ mod read;
 mod references;
 #[cfg(feature = "alloc")]
 mod remarks;
+#[cfg(feature = "alloc")]
+mod remarks_look;
 mod response;
 #[cfg(feature = "alloc")]
 mod rigging;

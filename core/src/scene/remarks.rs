@@ -51,6 +51,9 @@ impl SceneFile {
             );
             add(format_args!("emitters[{i}].spread"), odd_spread(emitter.spread));
             add(format_args!("emitters[{i}].lifetime"), odd_lifetime(emitter.lifetime));
+            let never = emitter.rate == 0.0 && emitter.burst.is_none_or(|burst| burst.count == 0);
+            let barren = || "neither this nor a burst says how many, so nothing is born".into();
+            add(format_args!("emitters[{i}].rate"), never.then(barren));
             let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
             let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
             add(format_args!("emitters[{i}].stop"), ended.map(nothing));
@@ -82,6 +85,7 @@ impl SceneFile {
             add(format_args!("scenery[{i}].shape.triangle"), thin(&item.shape));
         }
         self.add_idle(&mut add);
+        self.add_colors(&mut add);
         self.add_unread(&mut add);
         if let Some(i) = self.doubled_drag() {
             let twice = "wind brakes by the same coefficients, as seen from the moving air: both together brake twice; leave this one out, or give the wind a coefficient";

@@ -1,0 +1,65 @@
+//! Remarks on colours that are hardly meant.
+
+use super::{Light, Material, SceneFile};
+use alloc::format;
+use alloc::string::String;
+use core::fmt::Arguments;
+
+/// What no surface returns of the light that falls on it, nor any sky sends: more is a byte that has not been divided by 255, say.
+const BRIGHT: f32 = 2.0;
+
+/// The brightest that lamps are drawn.
+const DAZZLING: f32 = 100.0;
+
+impl SceneFile {
+    /// Remarks on colours beyond what they are drawn with, and on more glow than all.
+    pub(super) fn add_colors(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        for (i, material) in self.materials.iter().enumerate() {
+            let Material { ambient, diffuse, specular, transmission, emission, glow, .. } = material;
+            let colors = [ambient, diffuse, specular, transmission, emission];
+            let names = ["ambient", "diffuse", "specular", "transmission", "emission"];
+            for (name, color) in names.into_iter().zip(colors) {
+                add(format_args!("materials[{i}].{name}"), bright(*color));
+            }
+            let more = || format!("{glow} counts as 1, a glow and nothing else");
+            add(format_args!("materials[{i}].glow"), (*glow > 1.0).then(more));
+        }
+        for (i, light) in self.lights.iter().enumerate() {
+            let most = largest(light.color());
+            let less = || format!("{most} is drawn as {DAZZLING}, the most there is");
+            add(format_args!("lights[{i}].color"), (most > DAZZLING).then(less));
+        }
+        add(format_args!("ambient"), bright(self.ambient));
+        add(format_args!("background"), bright(self.background));
+        if let Some(sky) = self.sky {
+            let named = [("zenith", sky.zenith), ("horizon", sky.horizon), ("ground", sky.ground.unwrap_or_default())];
+            for (name, color) in named {
+                add(format_args!("sky.{name}"), bright(color));
+            }
+        }
+        let fog = self.fog.and_then(|fog| fog.color);
+        add(format_args!("fog.color"), fog.and_then(bright));
+    }
+}
+
+impl Light {
+    /// Its colour.
+    #[must_use]
+    pub fn color(&self) -> [f32; 3] {
+        let (Self::Directional { color, .. }
+        | Self::Point { color, .. }
+        | Self::Spot { color, .. }
+        | Self::Area { color, .. }) = self;
+        *color
+    }
+}
+
+fn largest(color: [f32; 3]) -> f32 {
+    color.into_iter().fold(0.0, f32::max)
+}
+
+fn bright(color: [f32; 3]) -> Option<String> {
+    let most = largest(color);
+    let divided = || format!("{most} is far beyond white: red, green, blue are from 0 to 1, bytes divided by 255");
+    (most > BRIGHT).then(divided)
+}
