@@ -21,6 +21,7 @@ mod run;
 mod schedule;
 mod show;
 mod shutter;
+mod sight;
 mod stage;
 mod stall;
 mod statistics;

@@ -2,10 +2,12 @@
 
 use crate::cast::{Cast, Memory, Seen};
 use crate::formats::{PictureFormat, pictures as format};
+use crate::load::name;
 use crate::outcome::{Failure, Outcome, print, tell, warn};
 use crate::parse::number;
 use crate::progress::Progress;
 use crate::show::{Blows, Show};
+use crate::sight::Sight;
 use crate::stage::{boxes, moves, pictures, stage, viewpoint};
 use crate::style::Style;
 use crate::viewpoint::{Crowd, Looking, Viewpoint};
@@ -181,6 +183,7 @@ fn film(
     let shutter = timing.shutter(args, world);
     let mut cast = Cast::new(&world.model, args.style, &args.show, shutter, from, &mut memory);
     let studio = Studio::new(args, world, from, &cast)?;
+    let mut sight = Sight::new(args.size);
     let mut blows = args.show.contains(&Show::Contacts).then(Blows::default);
     let (mut shots, mut drawn) = (Vec::new(), Vec::new());
     for frame in 0..=timing.frames {
@@ -198,6 +201,7 @@ fn film(
         if frame < timing.frames && sink.keeps_only_last() {
             continue;
         }
+        sight.note(&camera, &seen);
         shots.push(Shot { camera, seen });
         if shots.len() == studio.batch || frame == timing.frames {
             let draw = || shots.par_iter().map(|shot| studio.draw(shot)).collect();
@@ -211,6 +215,8 @@ fn film(
             shots.clear();
         }
     }
+    let beyond = sight.warning(&from.camera, || stage(&world.file, &world.model, &args.show, world.system.time()));
+    warn(beyond.map(|text| format!("{}:{text}", name(&args.world.scene))).as_slice());
     write(&drawn, sink)
 }
 

@@ -3,6 +3,8 @@
 use crate::bad_input::refused_by;
 use crate::tool::Folder;
 
+const CAMERA: &str = r#""eye": [0, 0, 9], "towards": [0, 0, -1]"#;
+
 #[test]
 fn looks_without_a_meaning_are_refused_where_they_stand() {
     let camera = |more: &str| format!(r#"{{"particles": [{{}}], "camera": {{"eye": [0, 0, 9], {more}}}}}"#);
@@ -71,4 +73,22 @@ fn looks_that_are_hardly_meant_are_remarked_on() {
         {"color": [60, 60, 60], "position": [0, 9, 0], "attenuation": [1, 0, 1]}}]}"#;
     folder.write("a.json", sound);
     folder.run("run a.json --steps 1").fine();
+}
+
+#[test]
+fn pictures_of_what_lies_beyond_the_cameras_reach_are_warned_of() {
+    let scene = |far: f32, more: &str| {
+        format!(r#"{{"particles": [{{"velocity": [0, 0, 1]}}], "camera": {{{CAMERA}, "far": {far}}}{more}}}"#)
+    };
+    let folder = Folder::with("a.json", scene(5.0, ""));
+    let answer = folder.run("render a.json --duration 1 --size 8x8 --out o.gif");
+    let told = "a.json:camera.far: nothing farther than 5 m is seen, and all that is before the camera lies there, the \
+                nearest 8 m away";
+    assert_eq!(answer.warnings(), [told]);
+    // What comes near in time, or stands there, is seen.
+    let ground = r#", "scenery": [{"shape": {"plane": {"point": [0, -1, 0], "normal": [0, 1, 0]}}}]"#;
+    for (far, more) in [(8.5, ""), (5.0, ground)] {
+        folder.write("a.json", scene(far, more));
+        folder.run("render a.json --duration 1 --size 8x8 --out o.gif").fine();
+    }
 }
