@@ -75,13 +75,17 @@ pub(crate) fn render(args: &Render) -> Outcome {
         Some(pool) => pool.install(|| draw(&mut world))?,
         None => world.on_threads(draw)?,
     }
-    let is_read = !sink.is_abandoned();
+    let (is_read, left_out) = (!sink.is_abandoned(), sink.left_out());
     sink.finish()?;
     drop(progress);
     if !is_read {
         return Ok(());
     }
-    say(args, drawn)
+    if left_out > 0 {
+        let all = "of a GIF shows at most 50; .apng, .mp4 and numbered pictures have all of them";
+        warn(&[format!("--fps {}: {left_out} of {drawn} pictures are left out: a second {all}", args.fps)]);
+    }
+    say(args, drawn, drawn - left_out)
 }
 
 /// When there are pictures.
@@ -297,12 +301,12 @@ fn pool(threads: u16) -> Outcome<ThreadPool> {
 }
 
 /// Says what was written, on standard output unless that is where the film went.
-fn say(args: &Render, pictures: u64) -> Outcome {
+fn say(args: &Render, drawn: u64, pictures: u64) -> Outcome {
     let ((path, _), (width, height)) = (&args.out, args.size);
     let what = match pictures {
         1 => format!("one picture of {width} x {height} pixels"),
         _ => {
-            let seconds = pictures as f64 / f64::from(args.fps);
+            let seconds = drawn as f64 / f64::from(args.fps);
             format!("{pictures} pictures of {width} x {height} pixels, {seconds:.2} s")
         }
     };

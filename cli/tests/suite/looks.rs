@@ -92,3 +92,19 @@ fn pictures_of_what_lies_beyond_the_cameras_reach_are_warned_of() {
         folder.run("render a.json --duration 1 --size 8x8 --out o.gif").fine();
     }
 }
+
+#[test]
+fn pictures_that_a_gif_does_not_show_are_not_counted() {
+    let folder = Folder::with("a.json", format!(r#"{{"particles": [{{}}], "camera": {{{CAMERA}}}}}"#));
+    let answer = folder.run("render a.json --duration 1 --fps 1000 --size 8x8 --out o.gif");
+    assert_eq!(
+        answer.warnings(),
+        [
+            "--fps 1000: 950 of 1001 pictures are left out: a second of a GIF shows at most 50; .apng, .mp4 and numbered \
+          pictures have all of them"
+        ]
+    );
+    assert!(answer.stdout.starts_with("o.gif: 51 pictures of 8 x 8 pixels, 1.00 s, "), "{answer:?}");
+    let answer = folder.run("render a.json --duration 0.1 --fps 100 --size 8x8 --out o.apng").fine();
+    assert!(answer.stdout.starts_with("o.apng: 11 pictures of 8 x 8 pixels, 0.11 s, "), "{answer:?}");
+}

@@ -20,8 +20,9 @@ const SHORTEST: u64 = 2;
 pub(super) struct Animation {
     file: WholeFile,
     fps: f64,
-    /// How many frames were pushed.
+    /// How many frames were pushed, and how many of them came too fast.
     count: u64,
+    left_out: u64,
     reel: Option<Reel>,
 }
 
@@ -35,7 +36,7 @@ struct Reel {
 
 impl Animation {
     pub(super) fn create(path: &Path, fps: f64) -> Outcome<Self> {
-        Ok(Self { file: WholeFile::create(path)?, fps, count: 0, reel: None })
+        Ok(Self { file: WholeFile::create(path)?, fps, count: 0, left_out: 0, reel: None })
     }
 
     /// When a frame begins, in hundredths of a second. Each is rounded by itself, so that the
@@ -50,6 +51,11 @@ impl Film for Animation {
         let begins = self.time(self.count);
         self.count += 1;
         let done = match &mut self.reel {
+            // Of frames that come too fast, some are left out.
+            Some(reel) if begins < reel.waiting.1 + SHORTEST => {
+                self.left_out += 1;
+                Ok(())
+            }
             Some(reel) => reel.push(frame, begins),
             None => self.file.reopen().map_err(EncodingError::from).and_then(|file| {
                 self.reel = Some(Reel::new(frame, BufWriter::new(file))?);
@@ -57,6 +63,10 @@ impl Film for Animation {
             }),
         };
         done.map_err(|error| cannot_write(self.file.path(), error))
+    }
+
+    fn left_out(&self) -> u64 {
+        self.left_out
     }
 
     fn finish(self: Box<Self>) -> Outcome {
@@ -78,10 +88,6 @@ impl Reel {
     }
 
     fn push(&mut self, frame: &RgbImage, begins: u64) -> Result<(), EncodingError> {
-        // Of frames that come too fast, some are left out.
-        if begins < self.waiting.1 + SHORTEST {
-            return Ok(());
-        }
         self.release(begins)?;
         self.waiting = (self.screen.show(frame), begins);
         Ok(())
@@ -119,6 +125,7 @@ mod tests {
         for number in 0..count {
             film.push(&RgbImage::from_pixel(4, 3, image::Rgb([(9 * number) as u8; 3]))).unwrap();
         }
+        let left_out = film.left_out();
         Box::new(film).finish().unwrap();
         let mut decoder = gif::Decoder::new(File::open(path).unwrap()).unwrap();
         assert_eq!(decoder.repeat(), Repeat::Infinite);
@@ -126,6 +133,7 @@ mod tests {
         while let Some(frame) = decoder.read_next_frame().unwrap() {
             delays.push(u64::from(frame.delay));
         }
+        assert_eq!(left_out + delays.len() as u64, u64::from(count), "{fps}");
         delays
     }
 

@@ -52,6 +52,11 @@ trait Film: std::fmt::Debug + Send {
     fn is_abandoned(&self) -> bool {
         false
     }
+
+    /// The frames that came too fast to be shown.
+    fn left_out(&self) -> u64 {
+        0
+    }
 }
 
 impl Sink {
@@ -100,6 +105,11 @@ impl Sink {
     /// Tells whether nobody reads what is written any more, so that no further frame need be drawn.
     pub fn is_abandoned(&self) -> bool {
         self.film.is_abandoned()
+    }
+
+    /// How many of the frames so far are left out, because they come faster than the format shows any: those of a GIF beyond 50 a second.
+    pub fn left_out(&self) -> u64 {
+        self.film.left_out()
     }
 
     /// Takes the next frame. All frames must have the same size.
