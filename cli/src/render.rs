@@ -34,7 +34,7 @@ pub(crate) struct Render {
     /// picture; or DIR/%04d.png, all pictures
     #[arg(long, value_name = "FILE", value_parser = format)]
     pub(crate) out: (PathBuf, PictureFormat),
-    /// Width and height in pixels
+    /// Width and height in pixels, each up to 8192
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "640x480", value_parser = size)]
     pub(crate) size: (u32, u32),
     /// Pictures per second of the scene's time
@@ -186,6 +186,7 @@ fn film(
     let mut memory = Memory::new(&world.file, args.style, world.system.capacity());
     let shutter = timing.shutter(args, world);
     let mut cast = Cast::new(&world.model, args.style, &args.show, shutter, from, &mut memory);
+    ensure(args.size, 1, 1)?;
     let studio = Studio::new(args, world, from, &cast)?;
     let mut sight = Sight::new(args.size);
     let mut blows = args.show.contains(&Show::Contacts).then(Blows::default);
@@ -208,6 +209,7 @@ fn film(
         sight.note(&camera, &seen);
         shots.push(Shot { camera, seen });
         if shots.len() == studio.batch || frame == timing.frames {
+            ensure(args.size, shots.len(), shots.iter().map(|shot| shot.seen.len()).sum())?;
             let draw = || shots.par_iter().map(|shot| studio.draw(shot)).collect();
             let (next, written) = rayon::join(draw, || write(&drawn, sink));
             written?;
@@ -222,6 +224,23 @@ fn film(
     let beyond = sight.warning(&from.camera, || stage(&world.file, &world.model, &args.show, world.system.time()));
     warn(beyond.map(|text| format!("{}:{text}", name(&args.world.scene))).as_slice());
     write(&drawn, sink)
+}
+
+/// Makes sure that there is memory for some pictures, which are the means of some exposures.
+fn ensure((width, height): (u32, u32), pictures: usize, exposures: usize) -> Outcome {
+    /// The bytes that a pixel takes of a picture, of an exposure that is kept, and of one in the making with what is behind it.
+    const PICTURE: usize = 24;
+    const KEPT: usize = 12;
+    const MAKING: usize = 80;
+    let making = MAKING * exposures.min(rayon::current_num_threads());
+    let bytes = (PICTURE * pictures + KEPT * exposures + making) * width as usize * height as usize;
+    match Vec::<u8>::new().try_reserve_exact(bytes) {
+        Ok(()) => Ok(()),
+        Err(_) => {
+            let needed = DecimalBytes(bytes as u64);
+            Err(Failure::new(format!("--size {width}x{height}: there is no memory for such pictures, about {needed}")))
+        }
+    }
 }
 
 fn write(pictures: &[RgbImage], sink: &mut Sink) -> Outcome {

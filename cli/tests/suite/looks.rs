@@ -108,3 +108,14 @@ fn pictures_that_a_gif_does_not_show_are_not_counted() {
     let answer = folder.run("render a.json --duration 0.1 --fps 100 --size 8x8 --out o.apng").fine();
     assert!(answer.stdout.starts_with("o.apng: 11 pictures of 8 x 8 pixels, 0.11 s, "), "{answer:?}");
 }
+
+/// With less memory than that, the program ends with an error, not with a trace.
+#[cfg(target_os = "linux")]
+#[test]
+fn pictures_that_there_is_no_memory_for_are_refused() {
+    let folder = Folder::with("a.json", format!(r#"{{"particles": [{{}}], "camera": {{{CAMERA}}}}}"#));
+    let answer = folder
+        .shell("ulimit -v 4000000; $POINTMASS render a.json --duration 0 --size 8192x8192 --threads 1 --out o.png");
+    assert!(answer.error().starts_with("--size 8192x8192: there is no memory for such pictures, about "), "{answer:?}");
+    assert_eq!(folder.names(), ["a.json"]);
+}
