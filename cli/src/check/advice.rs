@@ -104,7 +104,8 @@ fn never(check: &Study, model: &Model, stand: &Stand) -> String {
         let place = place(model, 1, i);
         return format!("{place} has a stiffness or damping below zero: it adds energy, and no step is stable");
     }
-    if check.dragged.is_none() && stand.growth_across <= 0.0 {
+    let is_pushed = model.particles.iter().any(|particle| !particle.fixed && particle.drag < 0.0);
+    if is_pushed || model.springs.is_empty() || check.dragged.is_none() && stand.growth_across <= 0.0 {
         return "drag below zero adds energy, and no step is stable".into();
     }
     let grows = time(1.0 / stand.growth_across);

@@ -147,8 +147,8 @@ impl Bounds {
                 time(limit),
                 culprit()
             )],
-            // What grows less than tenfold may go unseen.
-            Limit::Never if growth * duration > 10f64.ln() => vec![format!(
+            // What grows less than tenfold may go unseen. Where drag pushes, that is told, and nothing else makes it grow.
+            Limit::Never if self.pushed.is_none() && growth * duration > 10f64.ln() => vec![format!(
                 "with {method} what nothing damps grows at any step, here e-fold in {}, because of {}; try another \
                  --integrator, or see `pointmass check`",
                 time(1.0 / growth),

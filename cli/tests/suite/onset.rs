@@ -69,6 +69,12 @@ fn drag_below_zero_is_warned_of() {
     let folder = Folder::with("a.json", r#"{"particles": [{}, {"drag": -0.5}], "forces": [{"drag": {}}]}"#);
     let warnings = folder.run("run a.json --steps 1").warnings().join(" ");
     assert!(warnings.contains("a.json:particles[1] has a drag of -0.5 kg/s: below zero it adds energy"), "{warnings}");
+    // All of it is said once, and of no springs.
+    folder.write("c.json", r#"{"particles": [{"velocity": [1, 0, 0], "drag": -5}], "forces": [{"drag": {}}]}"#);
+    let pushed = "c.json:particles[0] has a drag of -5 kg/s: below zero it adds energy, take one of zero or above";
+    assert_eq!(folder.run("run c.json").warnings(), [pushed]);
+    let text = folder.run("check c.json").fine().stdout;
+    assert!(text.contains("drag below zero adds energy, and no step is stable") && !text.contains("a kd"), "{text}");
     // Without the force it does nothing.
     folder.write("b.json", r#"{"particles": [{"drag": -0.5}]}"#);
     folder.run("run b.json --steps 1").fine();
