@@ -6,7 +6,7 @@ use pointmass::scene::{Model, SceneFile};
 use pointmass::{
     ConstraintKind, Drag, Force, ForceKind, Gravity, Heap, Measures, Method, Particle, Scene, Sheet, System, Time, Vec3,
 };
-use pointmass_tests::{Random, gap, is_run, often, run, started};
+use pointmass_tests::{Random, every, gap, is_run, often, run, started};
 
 const G: f32 = 9.81;
 const DOWN: Gravity = Gravity { acceleration: Vec3::new(0.0, -G, 0.0) };
@@ -79,6 +79,33 @@ fn a_strip_clamped_at_one_end_sags_like_a_plate() {
             }
             let has = sum / weights;
             assert!((has / sag - 1.0).abs() < 0.03, "{method}, {cells} cells, {substeps} sub-steps: {}", has / sag);
+        }
+    }
+}
+
+/// A curtain hangs as far as its material gives, however long a sub-step is and however damped it is: gravity takes it on by a half of a cell and more there.
+#[test]
+fn a_curtain_hangs_as_far_in_one_sub_step() {
+    for (size, stretch, density, rate, method) in [
+        (0.1f32, 10.0f32, 0.2f32, 60u64, Method::Rk4),
+        (1.0, 100.0, 0.3, 24, Method::Symplectic),
+        (0.2, 30.0, 0.2, 50, Method::Implicit),
+    ] {
+        for damping in [0.0, 0.003, 0.05, 0.1].into_iter().step_by(every(2)) {
+            let sheet = Sheet { corner: Vec3::ZERO, sides: [Vec3::X * size, Vec3::NEG_Y * size], cells: [16, 16] };
+            let mut start = particles(&sheet, density);
+            for (i, particle) in start.iter_mut().enumerate() {
+                (particle.fixed, particle.drag) = (i < 17, 10.0 * particle.mass);
+            }
+            let (shell, integrator) = (shell(&sheet, even(stretch, 1e-5, damping)), method.integrator());
+            let forces = (DOWN, Drag {});
+            let scene = Scene { start: &start, forces: &forces, constraints: &shell, integrator, ..Scene::EMPTY };
+            let mut system = started(&scene, start.len(), 0);
+            run(&mut system, &scene, 1.0 / rate as f64, 3 * rate as u32);
+            // A row below another carries that much less; the half of a cell that the last row stands for is at its middle.
+            let gives = 0.5 * density * G * size * size / stretch;
+            let has = -system.particles().position[sheet.number(8, 16) as usize].y - size;
+            assert!((has / gives - 1.0).abs() < 0.15, "{method}, damped by {damping} s: {has}, not {gives}");
         }
     }
 }

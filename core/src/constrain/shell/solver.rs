@@ -10,7 +10,7 @@ use super::{Bodies, ShellParams};
 use crate::cloth::Hinge;
 use crate::constrain::walls::{self, Wall};
 use crate::lanes;
-use crate::math::{max, sqrt};
+use crate::math::{dot, max, sqrt};
 use crate::memory::take;
 use crate::report::Report;
 use crate::rows::add_scaled;
@@ -32,6 +32,8 @@ const FEW: usize = 1024;
 const CLOSER: f32 = 0.1;
 /// The sub-steps of damping from which on solutions are corrected.
 const MANY: f32 = 4.0;
+/// The share of an edge from which on they are, if particles are moved farther.
+const FAR: f32 = 0.1;
 /// The row of a particle that is not there.
 pub(super) const NOBODY: u32 = u32::MAX;
 
@@ -249,7 +251,7 @@ impl Solver<'_> {
                 break;
             }
         }
-        if is_first && self.step.lag > MANY * self.step.h && self.vectors.pressed == 0 && !self.last.is_empty() {
+        if is_first && self.vectors.pressed == 0 && !self.last.is_empty() && self.needs_correction() {
             self.correct(bodies, levels, &mut enough);
         }
         for (last, &shift) in self.last.iter_mut().zip(&*self.vectors.shift) {
@@ -266,6 +268,15 @@ impl Solver<'_> {
         }
         let Vectors { weight, shift, .. } = &mut self.vectors;
         walls::finish(self.walls, bodies, weight, shift);
+    }
+
+    /// Tells whether what strains have of second order is no little: where damping multiplies it, and where particles are moved far against the size of
+    /// triangles, as those of a sheet that hangs are in a long sub-step.
+    fn needs_correction(&self) -> bool {
+        let farthest = self.vectors.shift.iter().map(|&shift| dot(shift, shift)).fold(0.0, max);
+        let area: f32 = self.cells.iter().map(|cell| cell.area).sum();
+        let square = 2.0 * area / self.cells.len().max(1) as f32;
+        self.step.lag > MANY * self.step.h || farthest > FAR * FAR * square
     }
 
     /// A second step of Newton's method, if it is the shorter one: what strains have of second order in the first is no little where damping multiplies it.
