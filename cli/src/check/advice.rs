@@ -29,7 +29,8 @@ pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     advice.extend(taut(check, stand));
     advice.extend(check.holds.iter().filter_map(|hold| held(check, hold)));
     advice.extend(check.holds.iter().filter_map(|hold| fallen(check, hold)));
-    advice.extend(check.holds.iter().filter_map(|hold| tumbling(check, hold)));
+    advice.extend(check.holds.iter().filter_map(|hold| shorter(check, hold.tumbling(check.h()))));
+    advice.extend(check.holds.iter().filter_map(|hold| shorter(check, hold.trembling(check.h()))));
     advice.extend(world(check));
     advice
 }
@@ -149,15 +150,23 @@ fn taut(check: &Study, stand: &Stand) -> Option<String> {
 fn held(check: &Study, hold: &Hold) -> Option<String> {
     let warning = hold.warning(check.h())?;
     let Limit::Step(enough) = hold.largest_step() else { return None };
-    let parts = (check.dt / enough).ceil();
-    Some(format!("{warning}: let the scene cut its steps into {parts} (`run.substeps`)"))
+    Some(format!("{warning}: {}", cut(check, enough)))
 }
 
-/// Advice about boxes that turn too far in a sub-step where they fall.
-fn tumbling(check: &Study, hold: &Hold) -> Option<String> {
-    let (warning, enough) = hold.tumbling(check.h())?;
+/// What to do for sub-steps of so long \[s\]; scenes cut steps into a thousand at the most.
+fn cut(check: &Study, enough: f64) -> String {
+    const MOST: f64 = 1000.0;
     let parts = (check.dt / enough).ceil();
-    Some(format!("{warning}: let the scene cut its steps into {parts} (`run.substeps`)"))
+    match parts <= MOST {
+        true => format!("let the scene cut its steps into {parts} (`run.substeps`)"),
+        false => format!("take --dt {} or less", check.typed(enough)),
+    }
+}
+
+/// Advice about what takes shorter sub-steps than these.
+fn shorter(check: &Study, warned: Option<(String, f64)>) -> Option<String> {
+    let (warning, enough) = warned?;
+    Some(format!("{warning}: {}", cut(check, enough)))
 }
 
 /// Advice about sheets that sub-steps stretch by much where they fall.

@@ -25,6 +25,10 @@ const FALLS: f64 = 0.09;
 /// The turn of a box in a sub-step from which on it may be met too late \[rad\].
 const TURN: f64 = 0.5;
 
+/// The share of a link by which gravity takes a rope's particles on in a sub-step, from which on slack ropes may tremble for ever. Which of them do hangs on
+/// their drag: some at 0.1, most at 0.14.
+const TREMBLES: f64 = 0.08;
+
 /// By how much a pile of so many boxes sinks where it does so most, for each m/s² of gravity and s² of a sub-step \[m\]: as measured
 /// within a twentieth of what three to twenty do, and two.
 fn sinks(pile: usize) -> f64 {
@@ -59,6 +63,9 @@ pub(crate) struct Hold {
     /// How fast boxes may turn that strike something with a corner when they have fallen by their own size \[rad/s\].
     #[serde(skip)]
     tumbles: f64,
+    /// The longest sub-step in which slack ropes come to rest \[s\].
+    #[serde(skip)]
+    calm: f64,
     /// The number of boxes in the pile that `owes` is told of: of all there are, ten at the most; none: there is but one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) pile: Option<usize>,
@@ -124,7 +131,11 @@ impl Hold {
         let stiffest = |a: Option<[f64; 2]>, b: Option<[f64; 2]>| Some([a?[0].max(b?[0]), a?[1].max(b?[1])]);
         let stiffest = group.iter().map(stiffness).reduce(stiffest).flatten();
         let gravity = gravity(model).length();
+        let ropes = group.iter().filter(|of| of.name() == "rope");
+        let links = ropes.flat_map(|of| of.links().zip(of.lengths())).map(|(_, length)| f64::from(length));
+        let shortest = links.filter(|&length| length > 0.0).fold(f64::INFINITY, f64::min);
         Self {
+            calm: (TREMBLES * shortest / f64::from(gravity)).sqrt(),
             place: match kind.ends().next() {
                 Some(&end) if first >= model.listed_constraints => place(model, 0, end as usize),
                 _ => format!("constraints[{first}]"),
@@ -157,6 +168,7 @@ impl Hold {
         let weight = f64::from(gravity(model).length());
         let pile = Some(model.constraints.1.boxes.len().min(PILE)).filter(|&boxes| boxes > 1);
         Self {
+            calm: f64::INFINITY,
             place: place(model, 0, group[0].first as usize),
             kind: "boxes",
             count: group.len(),
@@ -259,6 +271,18 @@ impl Hold {
             );
             (told, enough)
         })
+    }
+
+    /// The warning about sub-steps of `h` \[s\] in which slack ropes do not come to rest, and the sub-steps that are short enough for that \[s\]; or none.
+    pub(crate) fn trembling(&self, h: f64) -> Option<(String, f64)> {
+        let (name, now, enough) = (self.name(), time(h), time(self.calm));
+        let told = || {
+            format!(
+                "in sub-steps of {now} {name} may tremble for ever where slack, as gravity moves its particles by more than {TREMBLES} of a link in each; \
+                 {enough} are short enough"
+            )
+        };
+        (h > self.calm * (1.0 + 1e-6)).then(|| (told(), self.calm))
     }
 
     /// The warning about sub-steps of `h` \[s\] that leave it too far off, or none.

@@ -397,6 +397,45 @@ fn json_of_the_wrong_type_is_not_taken_for_a_scene() {
     }
 }
 
+/// Gas stays in closed meshes alone whose triangles hang together and are seen from outside.
+#[test]
+fn gas_is_held_by_closed_meshes() {
+    let corners = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let off = |corners: &str, faces: &[[usize; 3]]| {
+        let lines: String = faces.iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n")).collect();
+        format!("OFF\n{} {} 0\n{corners}{lines}", corners.lines().count(), faces.len())
+    };
+    let turned = faces.map(|[a, b, c]| [a, c, b]);
+    let twice: String =
+        faces.iter().flatten().map(|&corner| format!("{}\n", corners.lines().nth(corner).unwrap_or(""))).collect();
+    let apart = [0, 3, 6, 9].map(|first| [first, first + 1, first + 2]);
+    for (mesh, why) in [
+        (off(corners, &faces), None),
+        (off(corners, &faces[..3]), Some("a triangle is missing there")),
+        (off(corners, &turned), Some("inside out")),
+        (off(&twice, &apart), Some("12 edges of this mesh have corners of their own")),
+    ] {
+        let scene = |gas: &str| {
+            format!(
+                r#"{{"cloths": [{{"form": {{"mesh": "m.off"}}, "mass": 1, "springs": {{"structural": {{"ks": 9}}}}{gas}}}]}}"#
+            )
+        };
+        let folder = Folder::with("m.off", &mesh);
+        folder.write("gas.json", scene(r#", "gas": {"amount": 1}"#));
+        folder.write("empty.json", scene(""));
+        folder.run("run empty.json --steps 1").fine();
+        let answer = folder.run("run gas.json --steps 1");
+        match why {
+            None => drop(answer.fine()),
+            Some(why) => {
+                let said = answer.error();
+                assert!(said.contains("gas.json:cloths[0].gas: needs ") && said.contains(why), "{mesh}: {said}");
+            }
+        }
+    }
+}
+
 #[test]
 fn an_error_is_one_short_line_whatever_a_name_holds() {
     let long = "a".repeat(100_000);

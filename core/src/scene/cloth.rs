@@ -7,7 +7,10 @@ use crate::draw::Patch;
 use crate::force::{Aerodynamics, FlowKind, ForceKind, Pressure, Spring};
 use crate::math::{length, min};
 use crate::particles::{Color, Particle};
-use crate::shape::MeshBuf;
+use crate::shape::enclosed::Enclosed;
+use crate::shape::{MeshBuf, NotSolid};
+use alloc::collections::BTreeSet;
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
@@ -334,6 +337,33 @@ impl Cloth {
         let Gas { amount, outside } = self.gas?;
         let triangles = mesh?.triangles().iter().map(|corners| corners.map(|corner| first + corner)).collect();
         Some(Pressure { triangles, amount, outside })
+    }
+
+    /// What keeps its mesh from holding gas, if it is to hold any.
+    pub(super) fn leak(&self, mesh: Option<&MeshBuf>) -> Option<String> {
+        let mesh = mesh.filter(|_| self.gas.is_some())?;
+        match Enclosed::of(mesh) {
+            // Shells that pass through each other hold theirs all the same.
+            Ok(_) | Err(NotSolid::Crossing(_)) => {}
+            Err(why) => return Some(format!("needs a closed mesh to be held by; this one {why}")),
+        }
+        let edges = || mesh.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let sides: BTreeSet<_> = edges().collect();
+        let seams = edges().filter(|&[a, b]| !sides.contains(&[b, a])).count();
+        if seams > 0 {
+            return Some(format!(
+                "needs triangles that share their corners; {seams} edges of this mesh have corners of their own in the same places, and \
+                 come apart: join them"
+            ));
+        }
+        let place = |corner: u32| mesh.vertices()[corner as usize] - mesh.vertices()[0];
+        let volume = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(place);
+            a.dot(b.cross(c))
+        };
+        let is_inside_out = mesh.triangles().iter().map(volume).sum::<f32>() < 0.0;
+        is_inside_out
+            .then(|| "needs a mesh seen from outside anticlockwise; this one is inside out: turn its triangles".into())
     }
 
     /// Its surface, if it has one.

@@ -114,6 +114,9 @@ impl Start {
             if particles.iter().any(|particle| !particle.position.is_finite()) {
                 return refuse("form", "reaches beyond the range of a 32-bit float".into());
             }
+            if let Some(leak) = cloth.leak(mesh.as_deref()) {
+                return refuse("gas", leak);
+            }
             if let Some(particle) = particles.iter().find(|particle| !particle.is_sound()) {
                 return refuse("mass", format!("leaves {:e} kg to each particle, too little", particle.mass));
             }

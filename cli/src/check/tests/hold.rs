@@ -17,8 +17,7 @@ fn model(gravity: f64, particles: &str, rest: &str) -> Model {
     Model::load(&file, "a.json", &mut crate::load::Disk).expect("a sound scene")
 }
 
-/// A particle of a scene, braked so that it comes to rest soon: but not by much, since methods that add half of a sub-step's fall to
-/// the velocity before brake that as well.
+/// A particle of a scene, braked so that it comes to rest soon.
 fn particle(at: Vec3, mass: f64, fixed: bool) -> String {
     let Vec3 { x, y, z } = at;
     format!(r#"{{"position": [{x}, {y}, {z}], "mass": {mass}, "drag": {}, "fixed": {fixed}}}"#, 0.8 * mass)
@@ -305,5 +304,38 @@ fn boxes_have_their_places_and_bound_the_steps_of_auto() {
             (Limit::Step(one), Limit::Step(seven)) => assert!((seven / one - 7.0).abs() < 1e-9),
             (one, seven) => assert_eq!(one, seven),
         }
+    }
+}
+
+/// Slack ropes come to rest in sub-steps that are just short enough for that, and not in all that are far longer.
+#[test]
+fn slack_ropes_tremble_in_long_sub_steps() {
+    for (length, segments, gravity, drag) in [(1.0, 50, 9.81, 1.0), (20.0, 40, 1.62, 1.0), (1.0, 30, 9.81, 10.0)] {
+        let deep = f64::sqrt(0.5 * 0.5 - 0.2 * 0.2) * length;
+        let text = format!(
+            r#"{{"forces": [{{"gravity": {{"acceleration": [0, -{gravity}, 0]}}}}, {{"drag": {{}}}}], "ropes": [{{
+                "curve": [[0, 0, 0], [{}, -{deep}, 0], [{}, 0, 0]], "segments": {segments}, "weight": 0.1, "drag": {},
+                "fixed": [0, {segments}]}}]}}"#,
+            0.2 * length,
+            0.4 * length,
+            0.08 * length * drag * f64::sqrt(gravity / length / 9.81),
+        );
+        let file = SceneFile::from_json("a.json", &text).expect("a scene");
+        let model = Model::load(&file, "", &mut crate::load::Disk).expect("a sound scene");
+        let [hold] = &Hold::all(&model)[..] else { panic!("one rope") };
+        let (_, calm) = hold.trembling(1e9).expect("any rope trembles in long sub-steps");
+        let fastest = |h: f64| {
+            let mut system = System::with(Heap::new(model.size(model.particles.len())));
+            system.start(&model.scene(), 1).expect("room");
+            for _ in 0..(20.0 * f64::sqrt(length / gravity * 9.81) / h) as u32 {
+                system.step(&model.scene(), Time::from_seconds_f64(h));
+            }
+            let speeds = system.particles().velocity.iter().map(|v| f64::from(v.length()));
+            speeds.fold(0.0, f64::max) / (gravity * h)
+        };
+        assert!(hold.trembling(0.99 * calm).is_none());
+        let still = fastest(0.98 * calm);
+        let trembling = [1.3, 1.6, 2.0].map(|longer| fastest(longer * calm)).into_iter().fold(0.0, f64::max);
+        assert!(still < 2e-2 && trembling > 0.1, "{length} m: {still} and {trembling} g h");
     }
 }
