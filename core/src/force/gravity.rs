@@ -38,6 +38,10 @@ impl Force for Gravity {
         true
     }
 
+    fn depends_on_motion(&self) -> bool {
+        false
+    }
+
     #[cfg(not(target_os = "none"))]
     fn steady(&self) -> Option<super::Steady> {
         Some(super::Steady { acceleration: Some(self.acceleration), drags: false })

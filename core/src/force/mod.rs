@@ -118,6 +118,12 @@ pub trait Force: Sync {
         false
     }
 
+    /// Tells whether it goes by where particles are, or how fast they go. By default it says yes, which is always right; no spares methods what they do
+    /// for whom constraints hold ([`Integrator::lead`](crate::Integrator::lead)).
+    fn depends_on_motion(&self) -> bool {
+        true
+    }
+
     /// The force as a steady acceleration and each particle's own drag, if it comes to no more than that: a step then
     /// works it out in one pass over the columns, to the bits of `add_to`. Chips without an operating system do not
     /// ask.
@@ -214,6 +220,9 @@ impl Force for () {
     fn is_local(&self) -> bool {
         true
     }
+    fn depends_on_motion(&self) -> bool {
+        false
+    }
     #[cfg(not(target_os = "none"))]
     fn steady(&self) -> Option<Steady> {
         Some(Steady::default())
@@ -256,6 +265,14 @@ macro_rules! sum_of {
                 needs = needs.and(part.needs());
             });
             needs
+        }
+        fn depends_on_motion(&self) -> bool {
+            each!(self, $parts, part => {
+                if part.depends_on_motion() {
+                    return true;
+                }
+            });
+            false
         }
         fn is_local(&self) -> bool {
             each!(self, $parts, part => {
@@ -312,6 +329,10 @@ macro_rules! same_as {
         fn is_local(&self) -> bool {
             let $this = self;
             $force.is_local()
+        }
+        fn depends_on_motion(&self) -> bool {
+            let $this = self;
+            $force.depends_on_motion()
         }
         #[cfg(not(target_os = "none"))]
         fn steady(&self) -> Option<$crate::force::Steady> {

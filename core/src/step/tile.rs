@@ -50,11 +50,12 @@ impl Scene<'_> {
         if is_alone { self.forces.steady() } else { None }
     }
 
-    /// The share of what constraints have done to velocities with which its method has to begin: none of it where forces go neither by velocities nor by places.
+    /// The share of what constraints have done to velocities with which its method has to begin: none of it where
+    /// forces go neither by velocities nor by places.
     pub(super) fn lead(&self) -> f32 {
-        let is_uniform = || self.springs.list().is_empty() && self.forces.steady().is_some_and(|steady| !steady.drags);
+        let depends = || self.forces.depends_on_motion() || !self.springs.list().is_empty();
         let lead = if self.constraints.is_empty() { 0.0 } else { self.integrator.lead() };
-        if lead > 0.0 && is_uniform() { 0.0 } else { lead }
+        if lead > 0.0 && depends() { lead } else { 0.0 }
     }
 
     /// The same, if a whole step is that pass.
