@@ -3,7 +3,8 @@
 use pointmass::scene::{Model, SceneFile};
 use pointmass::shape::Plane;
 use pointmass::{
-    Contacts, Distance, Drag, Event, EventKind, Events, Gravity, Ledger, Measures, Method, Particle, Scene, Time, Vec3,
+    Contacts, Distance, Drag, Event, EventKind, Events, Gravity, Ledger, Measures, Method, Particle, Scene, Spring,
+    Time, Vec3,
 };
 use pointmass_tests::{Random, gap, is_run, often, run, started};
 use serde_json::json;
@@ -144,6 +145,38 @@ fn what_hangs_in_still_air_weighs_what_it_weighs() {
                     }
                 }
             }
+        }
+    }
+}
+
+/// What hangs on a link that gives way and is pulled by a spring rests where both and its weight are even.
+#[test]
+fn a_spring_and_a_link_share_a_weight() {
+    let (compliance, ks) = (1e-3f32, 500.0f32);
+    let start =
+        [fixed(Vec3::ZERO), Particle { position: Vec3::NEG_Y, drag: 2.0, ..Particle::REST }, fixed(Vec3::NEG_Y * 3.0)];
+    let springs = [Spring::new([1, 2], 1.0, ks)];
+    let link = Distance { compliance, ..Distance::rod([0, 1], 1.0) };
+    // x / α = m g + k (1 − x).
+    let rests = 1.0 + (G as f32 + ks) / (1.0 / compliance + ks);
+    for substeps in [1, 4, 16] {
+        for &method in Method::ALL {
+            let integrator = &method;
+            let forces = (DOWN, Drag {});
+            let scene = Scene {
+                start: &start,
+                springs: &springs,
+                forces: &forces,
+                constraints: &link,
+                substeps,
+                integrator,
+                ..Scene::EMPTY
+            };
+            let mut system = started(&scene, 3, 0);
+            run(&mut system, &scene, 1.0 / 60.0, 1200);
+            let has = -system.particles().position[1].y;
+            let tolerance = if substeps == 1 { 0.03 } else { 2e-3 };
+            assert!(((has - rests) / (rests - 1.0)).abs() < tolerance, "{method} in {substeps}: {has}, not {rests}");
         }
     }
 }

@@ -23,7 +23,7 @@ fn drag_by_the_square_of_the_speed_is_judged_as_fast_as_particles_start_and_fall
     // 2 m over 2 k v.
     let (step, advice) = judged(&folder, BULLET);
     assert!((step / (0.01 / (0.01 * 800.0)) - 1.0).abs() < 1e-6, "{step}");
-    assert!(advice.contains("may explode") && advice.contains("particles start: quadratic drag;"), "{advice}");
+    assert!(advice.contains("may explode") && advice.contains("first 8 s: quadratic drag;"), "{advice}");
     let warnings = folder.run("run a.json --steps 1").warnings().join(" ");
     assert!(warnings.contains("because of particles[0] of drag 16 kg/s as it starts"), "{warnings}");
     assert!(folder.run("run a.json --steps 2 --substeps 100").warnings().is_empty());
@@ -41,7 +41,7 @@ fn drag_by_the_square_of_the_speed_is_judged_as_fast_as_particles_start_and_fall
 fn viscosity_is_judged_as_near_as_particles_start() {
     let folder = Folder::new();
     let (step, advice) = judged(&folder, TREACLE);
-    assert!((step - 0.1).abs() < 1e-6 && advice.contains("particles start: viscosity;"), "{step} {advice}");
+    assert!((step - 0.1).abs() < 1e-6 && advice.contains("first 8 s: viscosity;"), "{step} {advice}");
     // What there is left of their difference grows beyond that.
     for (dt, grows, warnings) in [(0.095, false, 0), (0.105, true, 1)] {
         let answer = folder.run(&format!("run a.json --steps 50 --dt {dt} --report json"));

@@ -44,20 +44,7 @@ impl SceneFile {
                 self.contacts.and_then(|contacts| body.overlap(contacts.contacts().is_some())),
             );
         }
-        for (i, emitter) in self.emitters.iter().enumerate() {
-            add(
-                format_args!("emitters[{i}].elasticity"),
-                odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed),
-            );
-            add(format_args!("emitters[{i}].spread"), odd_spread(emitter.spread));
-            add(format_args!("emitters[{i}].lifetime"), odd_lifetime(emitter.lifetime));
-            let never = emitter.rate == 0.0 && emitter.burst.is_none_or(|burst| burst.count == 0);
-            let barren = || "neither this nor a burst says how many, so nothing is born".into();
-            add(format_args!("emitters[{i}].rate"), never.then(barren));
-            let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
-            let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
-            add(format_args!("emitters[{i}].stop"), ended.map(nothing));
-        }
+        self.add_emitters(&mut add);
         add(format_args!("contacts.position"), self.uneven_balls());
         add(format_args!("contacts.impulse"), self.pressed_in());
         add(format_args!("boxes"), self.uneven_boxes());
@@ -92,6 +79,24 @@ impl SceneFile {
             add(format_args!("forces[{i}].drag"), Some(twice.into()));
         }
         remarks
+    }
+
+    /// Remarks on births.
+    fn add_emitters(&self, add: &mut dyn FnMut(Arguments<'_>, Option<String>)) {
+        for (i, emitter) in self.emitters.iter().enumerate() {
+            add(
+                format_args!("emitters[{i}].elasticity"),
+                odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed),
+            );
+            add(format_args!("emitters[{i}].spread"), odd_spread(emitter.spread));
+            add(format_args!("emitters[{i}].lifetime"), odd_lifetime(emitter.lifetime));
+            let never = emitter.rate == 0.0 && emitter.burst.is_none_or(|burst| burst.count == 0);
+            let barren = || "neither this nor a burst says how many, so nothing is born".into();
+            add(format_args!("emitters[{i}].rate"), never.then(barren));
+            let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
+            let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
+            add(format_args!("emitters[{i}].stop"), ended.map(nothing));
+        }
     }
 
     /// A remark on balls that weigh too much for others that they may come to lie on: what bears a heavy one comes through light ones only bit by bit.

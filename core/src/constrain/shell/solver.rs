@@ -270,10 +270,12 @@ impl Solver<'_> {
         walls::finish(self.walls, bodies, weight, shift);
     }
 
-    /// Tells whether what strains have of second order is no little: where damping multiplies it, and where particles are moved far against the size of
-    /// triangles, as those of a sheet that hangs are in a long sub-step.
+    /// Tells whether what strains have of second order is no little: where damping multiplies it, and where particles of a sheet that hangs are moved far
+    /// against the size of its triangles, as in long sub-steps.
     fn needs_correction(&self) -> bool {
-        let farthest = self.vectors.shift.iter().map(|&shift| dot(shift, shift)).fold(0.0, max);
+        let Vectors { rows, weight, shift, .. } = &self.vectors;
+        let is_hung = rows.iter().zip(&**weight).any(|(&row, &weight)| row != NOBODY && weight == 0.0);
+        let farthest = if is_hung { shift.iter().map(|&shift| dot(shift, shift)).fold(0.0, max) } else { 0.0 };
         let area: f32 = self.cells.iter().map(|cell| cell.area).sum();
         let square = 2.0 * area / self.cells.len().max(1) as f32;
         self.step.lag > MANY * self.step.h || farthest > FAR * FAR * square
