@@ -111,9 +111,9 @@ impl Study {
         let born = bounds.birth_warning(h);
         let corners = extremes(&bounds.bodies[..model.particles.len()]);
         let spectra: Vec<_> = corners.iter().filter_map(|corner| Spectrum::of(corner, &model.springs)).collect();
-        let not_judged = not_judged(model);
-        let is_whole = not_judged.is_empty();
-        let methods = Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, (h, is_whole))).collect();
+        let is_whole = |method: Method| not_judged(model, method).is_empty();
+        let methods =
+            Method::ALL.iter().map(|&method| stand(method, &bounds, &spectra, (h, is_whole(method)))).collect();
         let study = Self {
             scene: crate::load::name(path).into_owned(),
             dt,
@@ -137,7 +137,7 @@ impl Study {
             // An orbit that takes far longer than the run is none.
             pair: fastest_pair(model, &bounds.bodies).filter(|pair| pair.period < 10.0 * run.duration),
             sinks: Pull::all(model, &bounds.bodies),
-            not_judged,
+            not_judged: not_judged(model, model.integrator.method),
             judged_at_start: judged_at_start(model),
             advice: Vec::new(),
         };

@@ -5,7 +5,7 @@ use super::net::wide;
 use crate::stall::gravity;
 use pointmass::scene::Model;
 use pointmass::stability::longest_followed_step;
-use pointmass::{Force, ForceKind};
+use pointmass::{Force, ForceKind, Method};
 use serde::Serialize;
 
 /// Particles that are looked at for the quickest pair, and for who is around whom.
@@ -36,8 +36,12 @@ pub(crate) struct Pair {
 }
 
 /// Forces that may be as stiff as springs, depending on how near particles come or how fast they are.
-pub(crate) fn not_judged(model: &Model) -> Vec<&'static str> {
-    names(model, |force| !is_judged(force) && !is_judged_at_start(model, force))
+pub(crate) fn not_judged(model: &Model, method: Method) -> Vec<&'static str> {
+    // How lift turns with its surface no implicit method knows of.
+    let turns = |force: &ForceKind| {
+        method == Method::Implicit && matches!(force, ForceKind::Aerodynamics(air) if air.lift != 0.0)
+    };
+    names(model, |force| turns(force) || !is_judged(force) && !is_judged_at_start(model, force))
 }
 
 /// Forces that are as stiff as particles are fast or near, and are taken as stiff as they start.

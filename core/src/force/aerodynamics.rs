@@ -75,7 +75,7 @@ impl<T, F> Aerodynamics<T, F> {
 /// A triangle in the wind.
 struct Sail {
     rows: [usize; 3],
-    /// The force on it \[N\], and ½ ρ A |u| (C_D + ½ lift) \[kg/s\].
+    /// The force on it \[N\], and ½ ρ A |u| (C_D + lift) \[kg/s\].
     force: Vec3,
     brake: f32,
 }
@@ -111,7 +111,7 @@ impl<T: AsRef<[[u32; 3]]>, F: Flow> Aerodynamics<T, F> {
         let pressure = 0.25 * self.density * area * speed;
         let brake = pressure * (self.drag * (sine * sine) + self.friction * (1.0 - sine * sine));
         let lift = (normal - along * sine) * (pressure * self.lift * sine * speed);
-        (wind * brake + lift, brake + 0.5 * pressure * self.lift.abs())
+        (wind * brake + lift, brake + pressure * self.lift.abs())
     }
 }
 
@@ -126,8 +126,8 @@ impl<T: AsRef<[[u32; 3]]> + Sync, F: Flow> Force for Aerodynamics<T, F> {
         });
     }
 
-    /// The drag as if it grew with the speed alone. How lift and attack change is left out, since it may drive, and half of the most that lift grows by
-    /// with the speed across is taken for drag: lift that is not damped so throws back what is light, at any angle, in steps of 4 m / ρ A |u| lift.
+    /// The drag as if it grew with the speed alone. How lift and attack change is left out, since it may drive, and the most that lift grows by with the
+    /// speed across is taken for drag: lift that is not damped so throws back what is light, at any angle, in steps of 4 m / ρ A |u| lift.
     fn add_jacobian(&self, state: &State<'_>, change: &Perturbation<'_>, total: &mut [Vec3]) {
         self.each(state, &(0..total.len()), |sail| {
             let sum = sail.rows.iter().fold(Vec3::ZERO, |sum, &row| sum + change.along[row]);
