@@ -138,7 +138,7 @@ impl Study {
             pair: fastest_pair(model, &bounds.bodies).filter(|pair| pair.period < 10.0 * run.duration),
             sinks: Pull::all(model, &bounds.bodies),
             not_judged: not_judged(model, model.integrator.method),
-            judged_at_start: judged_at_start(model),
+            judged_at_start: judged_at_start(model, model.integrator.method),
             advice: Vec::new(),
         };
         (study, spectra)

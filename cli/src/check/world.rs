@@ -37,26 +37,24 @@ pub(crate) struct Pair {
 
 /// Forces that may be as stiff as springs, depending on how near particles come or how fast they are.
 pub(crate) fn not_judged(model: &Model, method: Method) -> Vec<&'static str> {
-    // How lift turns with its surface no implicit method knows of.
-    let turns = |force: &ForceKind| {
-        method == Method::Implicit && matches!(force, ForceKind::Aerodynamics(air) if air.lift != 0.0)
-    };
-    names(model, |force| turns(force) || !is_judged(force) && !is_judged_at_start(model, force))
+    names(model, |force| !is_judged(force) && !is_judged_at_start(model, method, force))
 }
 
 /// Forces that are as stiff as particles are fast or near, and are taken as stiff as they start.
-pub(crate) fn judged_at_start(model: &Model) -> Vec<&'static str> {
-    names(model, |force| is_judged_at_start(model, force))
+pub(crate) fn judged_at_start(model: &Model, method: Method) -> Vec<&'static str> {
+    names(model, |force| is_judged_at_start(model, method, force))
 }
 
 fn is_judged(force: &ForceKind) -> bool {
     matches!(force, ForceKind::Gravity(_) | ForceKind::Drag(_) | ForceKind::Wind(_) | ForceKind::MutualGravity(_))
 }
 
-/// Who will be born among whom nobody knows, nor is it worked out for more than a few thousand.
-fn is_judged_at_start(model: &Model, force: &ForceKind) -> bool {
+/// Who will be born among whom nobody knows, nor is it worked out for more than a few thousand. How lift turns with its surface the implicit method does
+/// not know of.
+fn is_judged_at_start(model: &Model, method: Method, force: &ForceKind) -> bool {
     match force {
-        ForceKind::QuadraticDrag(_) | ForceKind::Aerodynamics(_) | ForceKind::CylinderDrag(_) => true,
+        ForceKind::QuadraticDrag(_) | ForceKind::CylinderDrag(_) => true,
+        ForceKind::Aerodynamics(air) => method != Method::Implicit || air.lift == 0.0,
         ForceKind::Viscosity(_) => model.emitters.is_empty() && model.particles.len() <= MOST,
         _ => false,
     }
