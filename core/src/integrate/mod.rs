@@ -178,9 +178,9 @@ pub trait Integrator: Sync {
         None
     }
 
-    /// The share of a step at which it takes the forces that go by velocities: 0 as the step begins, 1 as it ends, and ½ on an average of both. Who is held by constraints
-    /// begins each sub-step so much slower by what these have taken of his velocity in the one before, so that forces act as on whoever stays. A scene with
-    /// constraints keeps three words more of each particle where this is above zero.
+    /// The share of a step at which it takes the forces that go by velocities: 0 as the step begins, 1 as it ends, and ½ on an average of both. Who is
+    /// held by constraints begins each sub-step so much slower by what these have taken of his velocity in the one before, so that forces act as on
+    /// whoever stays. A scene with constraints keeps three words more of each particle where this is above zero.
     fn lead(&self) -> f32 {
         0.0
     }
