@@ -1,11 +1,11 @@
-//! Whether a film shows anything at all.
+//! The films that show nothing at all.
 
 use crate::cast::Seen;
 use crate::report::words::short;
 use glam::Vec3;
 use pointmass_draw::{Camera, Piece, Stage};
 
-/// What lies before a camera: whether any of it is within its reach, and how far away the nearest is.
+/// Things before a camera: whether any of them is within its reach, and how far away the nearest is.
 #[derive(Debug)]
 pub(crate) struct Sight {
     is_seen: bool,

@@ -153,7 +153,7 @@ fn held(check: &Study, hold: &Hold) -> Option<String> {
     Some(format!("{warning}: {}", cut(check, enough)))
 }
 
-/// What to do for sub-steps of so long \[s\]; scenes cut steps into a thousand at the most.
+/// Advice on how to get sub-steps of so long \[s\]; scenes cut steps into a thousand at the most.
 fn cut(check: &Study, enough: f64) -> String {
     const MOST: f64 = 1000.0;
     let parts = (check.dt / enough).ceil();

@@ -53,7 +53,7 @@ impl Gas {
             time(push)
         );
         let part = Part { place: place(model, 0, gas.triangles[0][0] as usize), spring: None, about, mode };
-        (push < f64::INFINITY).then_some(Self { part, push })
+        (push > 0.0 && push < f64::INFINITY).then_some(Self { part, push })
     }
 
     /// The step in which it pushes so little, or that explicit methods stand.

@@ -79,6 +79,10 @@ fn crowd(model: &Model) -> Vec<f64> {
 /// come \[kg/s\]: how forces grow with speeds, which where drag grows with the square of the speed is twice what it has for each metre a second.
 fn air(model: &Model) -> Vec<f64> {
     let mut most = vec![0.0; model.particles.len()];
+    let blows = |force: &ForceKind| matches!(force, ForceKind::Aerodynamics(_) | ForceKind::CylinderDrag(_));
+    if !model.forces.0.iter().any(blows) {
+        return most;
+    }
     for instant in 0..INSTANTS {
         let time = Time::from_seconds_f64(instant as f64 * APART);
         let mut sums = vec![0.0; most.len()];

@@ -49,7 +49,7 @@ fn is_judged(force: &ForceKind) -> bool {
     matches!(force, ForceKind::Gravity(_) | ForceKind::Drag(_) | ForceKind::Wind(_) | ForceKind::MutualGravity(_))
 }
 
-/// Who will be born among whom nobody knows, nor is it worked out for more than a few thousand. How lift turns with its surface the implicit method does
+/// Neighbours of the newborn nobody knows, nor are those of more than a few thousand worked out. How lift turns with its surface the implicit method does
 /// not know of.
 fn is_judged_at_start(model: &Model, method: Method, force: &ForceKind) -> bool {
     match force {

@@ -1,4 +1,4 @@
-//! What a scene says of its looks: what cannot be drawn so is refused, what is hardly meant is remarked on.
+//! The looks that a scene asks for: what cannot be drawn so is refused, what is hardly meant is remarked on.
 
 use crate::bad_input::refused_by;
 use crate::tool::Folder;

@@ -7,7 +7,7 @@ use std::fs;
 
 const STEPS: usize = 12;
 
-/// What all of the scene weighs \[kg\]: a ball, a sheet, four bodies.
+/// The weight of all of the scene \[kg\]: a ball, a sheet, four bodies.
 const MASS: f64 = 1.0 + 1.0 + 4.0 * 0.7;
 
 /// Two boxes and two dice that spin through the air, a sheet and a ball.

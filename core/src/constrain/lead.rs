@@ -1,4 +1,4 @@
-//! What constraints do to particles, for the forces on these to know of it.
+//! The velocities that constraints take, for the forces of the next sub-step to know of.
 
 use super::Moved;
 use crate::math::{dot, sqrt};

@@ -50,7 +50,7 @@ pub(super) struct Vectors<'m> {
     pub(super) q: &'m mut [Vec3],
     /// How far walls have moved them before anything is solved \[m\].
     pub(super) met: &'m mut [Vec3],
-    /// Who is pressed by a wall, and how many that are; between two steps of Newton's method, 1 for each that needs another.
+    /// The particles that walls press, and how many these are; between two steps of Newton's method, 1 for each that needs another.
     pub(super) pressing: &'m mut [u32],
     pressed: usize,
 }
@@ -274,11 +274,13 @@ impl Solver<'_> {
     /// against the size of its triangles, as in long sub-steps.
     fn needs_correction(&self) -> bool {
         let Vectors { rows, weight, shift, .. } = &self.vectors;
-        let is_hung = rows.iter().zip(&**weight).any(|(&row, &weight)| row != NOBODY && weight == 0.0);
-        let farthest = if is_hung { shift.iter().map(|&shift| dot(shift, shift)).fold(0.0, max) } else { 0.0 };
-        let area: f32 = self.cells.iter().map(|cell| cell.area).sum();
-        let square = 2.0 * area / self.cells.len().max(1) as f32;
-        self.step.lag > MANY * self.step.h || farthest > FAR * FAR * square
+        let is_hung = || rows.iter().zip(&**weight).any(|(&row, &weight)| row != NOBODY && weight == 0.0);
+        let is_far = || {
+            let farthest = shift.iter().map(|&shift| dot(shift, shift)).fold(0.0, max);
+            let area: f32 = self.cells.iter().map(|cell| cell.area).sum();
+            farthest > FAR * FAR * (2.0 * area / self.cells.len().max(1) as f32)
+        };
+        self.step.lag > MANY * self.step.h || is_hung() && is_far()
     }
 
     /// A second step of Newton's method, if it is the shorter one: what strains have of second order in the first is no little where damping multiplies it.
