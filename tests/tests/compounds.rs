@@ -560,3 +560,59 @@ fn scenes_have_bodies_with_hollows() {
         assert!(error.contains("it.json") && words.iter().all(|word| error.contains(word)), "{error}");
     }
 }
+
+/// Without sides, points and meshes are as large as they are; with a density they weigh what their form does.
+#[test]
+fn scenes_have_bodies_as_large_as_their_form_and_as_heavy_as_their_material() {
+    let load = |numbers: &str| {
+        let text = format!(r#"{{"boxes": [{{{numbers}, "position": [0, 1, 0], "count": [2, 1, 1]}}]}}"#);
+        let file = SceneFile::from_json("it.json", &text).map_err(|error| error.to_string())?;
+        Model::load(&file, "it.json", &mut Rings).map_err(|error| error.to_string())
+    };
+    let ring = 12.0 * (TAU / 24.0).sin() * (0.04f32.powi(2) - 0.03f32.powi(2)) * 0.01;
+    let hull = 12.0 * (TAU / 24.0).sin() * 0.04f32.powi(2) * 0.01;
+    let corner = r#"{"points": [[0,0,0], [3,0,0], [0,1,0], [0,0,2]]}"#;
+    let two = r#"{"pieces": [[[0,0,0],[3,0,0],[0,1,0],[3,1,0],[0,0,1],[3,0,1],[0,1,1],[3,1,1]],
+        [[0,1,0],[1,1,0],[0,4,0],[1,4,0],[0,1,1],[1,1,1],[0,4,1],[1,4,1]]]}"#;
+    for (form, sides, size, volume) in [
+        ("\"box\"", Some([0.5, 2.0, 3.0]), [0.5, 2.0, 3.0], 3.0),
+        ("\"octahedron\"", Some([2.0, 1.0, 3.0]), [2.0, 1.0, 3.0], 1.0),
+        (corner, None, [3.0, 1.0, 2.0], 1.0),
+        (corner, Some([1.0, 1.0, 1.0]), [1.0, 1.0, 1.0], 1.0 / 6.0),
+        (two, None, [3.0, 4.0, 1.0], 6.0),
+        (r#"{"mesh": "ring.obj"}"#, None, [0.08, 0.01, 0.08], hull),
+        (r#"{"solid": {"mesh": "ring.obj", "within": 0.002}}"#, None, [0.08, 0.01, 0.08], ring),
+        (r#"{"solid": {"mesh": "ring.obj", "within": 0.02}}"#, Some([0.8, 0.1, 0.8]), [0.8, 0.1, 0.8], ring * 1e3),
+    ] {
+        let sides = sides.map_or(String::new(), |sides| format!(r#""sides": {sides:?}, "#));
+        let model =
+            load(&format!(r#""form": {form}, {sides}"density": 700"#)).unwrap_or_else(|error| panic!("{error}"));
+        let weighs = model.particles.iter().map(|p| p.mass).sum::<f32>() / (2.0 * 700.0);
+        assert!((weighs / volume - 1.0).abs() < 1e-3, "{form}: {weighs} m³ for {volume}");
+        let bodies = &model.constraints.1;
+        let apart = bodies.boxes[1].center - bodies.boxes[0].center;
+        assert!((apart - Vec3::X * size[0]).length() < 1e-4, "{form}: {apart}");
+        let corners: Vec<_> = match model.surface(&bodies.boxes[0]) {
+            Some((corners, _)) => corners.to_vec(),
+            None => [-1.0, 1.0].map(|sign| bodies.boxes[0].half * sign).to_vec(),
+        };
+        let widest = corners.iter().copied().reduce(Vec3::max).expect("corners")
+            - corners.iter().copied().reduce(Vec3::min).expect("corners");
+        assert!((widest - Vec3::from(size)).length() < 1e-3 * widest.length(), "{form}: {widest} for {size:?}");
+    }
+    for (numbers, at, words) in [
+        (r#""density": 700"#, "boxes[0].sides", "are missing"),
+        (r#""form": "tetrahedron", "mass": 1"#, "boxes[0].sides", "are missing"),
+        (r#""sides": [1, 1, 1]"#, "boxes[0].mass", "density"),
+        (r#""sides": [1, 1, 1], "mass": 1, "density": 1"#, "boxes[0].density", "either"),
+        (r#""sides": [1, 1, 1], "density": -1"#, "boxes[0].density", "above zero"),
+        (r#""sides": [1, 1, 0], "density": 1"#, "boxes[0].sides", "above zero"),
+        (r#""sides": [1, 1, 1], "mass": -1"#, "boxes[0].mass", "above zero"),
+        (r#""form": {"points": [[0,0,0],[1,0,0],[0,1,0]]}, "density": 1"#, "boxes[0].form", "flat"),
+        (r#""form": {"points": []}, "density": 1"#, "boxes[0].form", "flat"),
+        (r#""sides": [10, 1, 1], "density": 1e38"#, "boxes[0]", "too much"),
+    ] {
+        let error = load(numbers).err().unwrap_or_default();
+        assert!(error.contains(at) && error.contains(words), "{numbers}: {error}");
+    }
+}

@@ -18,11 +18,17 @@ pub struct Boxes {
     /// What they are: a box unless it says otherwise, the convex hull of some points, or a body of several pieces, which need not be convex.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "BoxForm::is_box"))]
     pub form: BoxForm,
-    /// The lengths of a box's sides \[m\]; of the sides of the upright box around another form, which is stretched to fill it.
-    #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
-    pub sides: Vec3,
-    /// The mass of each \[kg\].
+    /// The lengths of a box's sides \[m\]; of the sides of the upright box around another form, which is stretched to fill it. Without them points and
+    /// meshes are as large as they are; a box or a die needs them.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<[f32; 3]>"))]
+    pub sides: Option<Vec3>,
+    /// The mass of each \[kg\], in place of `density`.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_zero"))]
     pub mass: f32,
+    /// The mass of a cubic metre of what they are made of \[kg/m³\], in place of `mass`.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub density: Option<f32>,
     /// Where the middle of the first is, its centre of mass \[m\].
     #[cfg_attr(feature = "schema", schemars(with = "[f32; 3]"))]
     pub position: Vec3,
@@ -118,6 +124,11 @@ impl BoxForm {
         *self == Self::Box
     }
 
+    /// Tells whether it says itself how large it is.
+    pub(super) fn has_size(&self) -> bool {
+        matches!(self, Self::Points(_) | Self::Mesh(_) | Self::Pieces(_) | Self::Solid(_))
+    }
+
     /// The file of its mesh, if it has one.
     pub(super) fn file(&self) -> Option<&str> {
         match self {
@@ -176,6 +187,12 @@ const fn many() -> u16 {
     64
 }
 
+/// Tells whether a mass is left out.
+#[cfg(feature = "serde")]
+fn is_zero(mass: &f32) -> bool {
+    *mass == 0.0
+}
+
 /// One box.
 #[cfg(feature = "serde")]
 const fn one() -> [u32; 3] {
@@ -199,7 +216,7 @@ impl Boxes {
         let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let all = || pieces.iter().flatten();
         let (least, most) = all().fold(start, |(a, b), &point| (low(a, point), high(b, point)));
-        let (middle, stretch) = ((least + most) * 0.5, self.sides / (most - least));
+        let (middle, stretch) = ((least + most) * 0.5, self.sides.map_or(Vec3::ONE, |sides| sides / (most - least)));
         if !(all().all(|point| point.is_finite()) && stretch.is_finite()) {
             let error = if (least - most).is_finite() { HullError::Flat } else { HullError::NotFinite };
             return Some(Err(error.to_string()));
@@ -222,14 +239,41 @@ impl Boxes {
         }))
     }
 
-    /// Its particles and bodies, the first particle having number `first` in the scene's start; `form` is that of each, and the number of its
-    /// first hull.
-    pub(super) fn make(&self, first: u32, form: Option<(u16, &CompoundBuf)>) -> (Vec<Particle>, Vec<RigidBox>) {
+    /// The sides of the upright box around one \[m\]; `mesh` is that of its file. None, if that is not said, or not known without the mesh.
+    pub(super) fn size(&self, mesh: Option<&MeshBuf>) -> Option<Vec3> {
+        self.sides.or_else(|| {
+            let points = self.form.points(mesh).filter(|_| self.form.has_size())?;
+            let all = points.iter().flatten().copied();
+            Some(all.clone().reduce(high)? - all.reduce(low)?)
+        })
+    }
+
+    /// The mass of each \[kg\]; none, if that is not known without its mesh.
+    pub(super) fn weight(&self) -> Option<f32> {
+        let Some(density) = self.density else { return Some(self.mass) };
+        let volume = match self.compound(None) {
+            None => self.sides.filter(|_| self.form == BoxForm::Box)?.to_array().iter().product(),
+            Some(form) => form.ok()?.0.volume(),
+        };
+        Some(density * volume)
+    }
+
+    /// Its particles and bodies of such a size \[m\], the first particle having number `first` in the scene's start; `form` is that of each, and the
+    /// number of its first hull.
+    pub(super) fn make(
+        &self,
+        first: u32,
+        size: Vec3,
+        form: Option<(u16, &CompoundBuf)>,
+    ) -> (Vec<Particle>, Vec<RigidBox>) {
         let [nx, ny, nz] = self.count;
+        let volume = form.map_or_else(|| size.to_array().iter().product(), |(_, form)| form.volume());
+        let mass = self.density.map_or(self.mass, |density| density * volume);
         let places = (0..ny).flat_map(|y| (0..nz).flat_map(move |z| (0..nx).map(move |x| [x, y, z])));
         let (mut particles, mut bodies) = (Vec::new(), Vec::new());
         for (number, place) in places.enumerate() {
-            let (mut body, whole, spin) = self.body(number as u32, place, first + particles.len() as u32);
+            let (mut body, whole, spin) = self.body(number as u32, place, first + particles.len() as u32, size);
+            let whole = Particle { mass, ..whole };
             if let Some((number, form)) = form {
                 let RigidBox { half, pieces, .. } = RigidBox::with_compound(form, number, body.center, body.first);
                 body = RigidBox { hull: Some(number), half, pieces, ..body };
@@ -246,23 +290,22 @@ impl Boxes {
         (particles, bodies)
     }
 
-    /// The box with a number, its particles in one, and how it turns.
-    fn body(&self, number: u32, place: [u32; 3], first: u32) -> (RigidBox, Particle, Vec3) {
+    /// The box with a number, its particles in one but for their mass, and how it turns.
+    fn body(&self, number: u32, place: [u32; 3], first: u32, size: Vec3) -> (RigidBox, Particle, Vec3) {
         let chance = self.scatter.unwrap_or_default();
         let stream = Stream::new(u64::from(chance.seed), u32::MAX, number);
         let vary = |place: u32, by: f32| {
             let ([x, y], [z, _]) = (stream.units(2 * place), stream.units(2 * place + 1));
             (Vec3::new(x, y, z) * 2.0 - 1.0) * by
         };
-        let step = self.spacing.unwrap_or(self.sides) * Vec3::from_array(place.map(|n| n as f32));
+        let step = self.spacing.unwrap_or(size) * Vec3::from_array(place.map(|n| n as f32));
         let turn = self.turn + vary(1, chance.turn);
         let (sin, cos) = sin_cos(0.5 * length(turn));
         let [x, y, z] = (unit(turn) * sin).to_array();
         let center = self.position + step + vary(0, chance.position);
-        let body = RigidBox { turn: [x, y, z, cos], ..RigidBox::new(self.sides * 0.5, center, first) };
+        let body = RigidBox { turn: [x, y, z, cos], ..RigidBox::new(size * 0.5, center, first) };
         let color = (!self.colors.is_empty()).then(|| self.colors[number as usize % self.colors.len()]);
         let whole = Particle {
-            mass: self.mass,
             velocity: self.velocity + vary(2, chance.velocity),
             drag: self.drag * 0.125,
             elasticity: self.elasticity,

@@ -4,11 +4,12 @@ use super::check_shape::check_shape;
 use super::filling::MOST_OF_SOFT;
 use super::numbers::{Checked, above_zero, check_breaking, finite, zero_or_more};
 use super::tuft::along;
-use super::{Air, BoxForm, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
+use super::{Air, BoxForm, Boxes, Cloth, Curl, Field, Form, Growth, Scatter, SceneError, SceneFile, StrandAir, Tuft};
 use crate::cloth::{ClothSprings, Sheet};
 use crate::math::{dot, length};
 use crate::motion::Motion;
 use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 use glam::Vec3;
 
@@ -78,10 +79,7 @@ impl SceneFile {
         let mut count = 0u64;
         for (i, boxes) in self.boxes.iter().enumerate() {
             let at = |field: &str| format!("boxes[{i}].{field}");
-            for side in boxes.sides.to_array() {
-                above_zero(&at("sides"), side)?;
-            }
-            above_zero(&at("mass"), boxes.mass)?;
+            boxes.check_size(&at)?;
             let spacing = boxes.spacing.unwrap_or_default();
             let vectors = [boxes.position, spacing, boxes.turn, boxes.velocity, boxes.spin, boxes.load];
             let names = ["position", "spacing", "turn", "velocity", "spin", "load"];
@@ -179,6 +177,25 @@ impl StrandAir {
         above_zero(&format!("{at}.air.diameter"), diameter.unwrap_or(1.0))?;
         let numbers = [("density", density), ("viscosity", viscosity), ("friction", friction)];
         numbers.into_iter().try_for_each(|(name, number)| zero_or_more(&format!("{at}.air.{name}"), number))
+    }
+}
+
+impl Boxes {
+    /// Checks how large they are and what they weigh; `at` makes the name of a field.
+    fn check_size(&self, at: &impl Fn(&str) -> String) -> Checked {
+        if let Some(sides) = self.sides {
+            sides.to_array().into_iter().try_for_each(|side| above_zero(&at("sides"), side))?;
+        } else if !self.form.has_size() {
+            return Err(SceneError::value(at("sides"), "are missing: say how large it is along x, y and z, in m"));
+        }
+        match self.density {
+            Some(_) if self.mass != 0.0 => Err(SceneError::value(at("density"), "say either density or mass")),
+            Some(density) => above_zero(&at("density"), density),
+            None if self.mass == 0.0 => {
+                Err(SceneError::value(at("mass"), "is missing, or zero: say it, in kg, or the density, in kg/m³"))
+            }
+            None => above_zero(&at("mass"), self.mass),
+        }
     }
 }
 

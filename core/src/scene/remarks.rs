@@ -131,24 +131,23 @@ impl SceneFile {
     fn uneven_boxes(&self) -> Option<String> {
         /// The share of the smallest side that one may sink in.
         const SHARE: f32 = 0.01;
-        let free = || self.boxes.iter().filter(|boxes| !boxes.fixed && boxes.mass > 0.0);
-        let heaviest = free().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
-        let lightest = free().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
+        let free = self.boxes.iter().filter(|boxes| !boxes.fixed);
+        let known: Vec<_> = free.filter_map(|boxes| Some((boxes.weight()?, boxes.size(None)?.min_element()))).collect();
+        let &(heaviest, _) = known.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let &(lightest, side) = known.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         let (taken, pull) = (self.substeps() as f32, length(self.pull()));
         let h = self.run.dt as f32 / taken;
-        let depth = 0.25 * (heaviest.mass / lightest.mass) * pull * h * h;
-        let room = SHARE * lightest.sides.min_element();
+        let depth = 0.25 * (heaviest / lightest) * pull * h * h;
+        let room = SHARE * side;
         let sinks = || {
             let needed = (taken * sqrt(depth / room)) as u32;
             let needed = needed.saturating_add(1);
             format!(
-                "bodies of {} kg sink into those of {} kg that bear them, and through them at last; {}",
-                heaviest.mass,
-                lightest.mass,
+                "bodies of {heaviest} kg sink into those of {lightest} kg that bear them, and through them at last; {}",
                 enough(needed)
             )
         };
-        (depth > room && heaviest.mass > lightest.mass).then(sinks)
+        (depth > room && heaviest > lightest).then(sinks)
     }
 
     /// Remarks on springs.
@@ -166,7 +165,7 @@ impl SceneFile {
         let free = self.boxes.iter().enumerate().filter(|(_, boxes)| !boxes.fixed && !is_scattered(boxes));
         let mut places = Vec::new();
         for (i, boxes) in free {
-            let spacing = boxes.spacing.unwrap_or(boxes.sides).to_array();
+            let spacing = boxes.spacing.unwrap_or(Vec3::ONE).to_array();
             let axes = ["x", "y", "z"].into_iter().zip(boxes.count.into_iter().zip(spacing));
             let heap = axes.filter(|(_, (count, spacing))| *count > 1 && *spacing == 0.0).map(|(name, _)| name).next();
             let all =
@@ -191,7 +190,7 @@ impl SceneFile {
             return None;
         }
         let (thickness, point) = (cloth.thickness.filter(|&thickness| thickness > 0.0)?, cloth.point_mass()?);
-        let boxes = self.boxes.iter().filter(|boxes| !boxes.fixed).map(|boxes| boxes.mass);
+        let boxes = self.boxes.iter().filter(|boxes| !boxes.fixed).filter_map(Boxes::weight);
         let balls = self.particles.iter().filter(|ball| !ball.fixed && ball.radius > 0.0).map(|ball| ball.mass);
         let others = self.cloths.iter().filter(|other| other.fixed.is_empty() && other.thickness.is_some());
         let points = others.filter_map(Cloth::point_mass).filter(|&other| other > point);

@@ -40,14 +40,14 @@ impl SceneFile {
         }
         let mut loads = vec![0.0; names.len()];
         for (place, boxes) in free.iter().enumerate() {
-            loads[root(&mut bound, place as u32) as usize] += boxes.map_or(0.0, |boxes| boxes.mass);
+            loads[root(&mut bound, place as u32) as usize] += boxes.and_then(Boxes::weight).unwrap_or(0.0);
         }
         let mut fastest = (0, 0.0);
         for (number, cord) in self.ropes.iter().enumerate() {
             let long = cord.curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum();
             for place in places(cord).filter(|&place| ropes[place] > 1) {
                 let load = loads[root(&mut bound, place as u32) as usize] * length(self.pull());
-                let turn = free[place].map_or(0.0, |boxes| turn(boxes, load, long));
+                let turn = free[place].and_then(|boxes| turn(boxes, load, long)).unwrap_or(0.0);
                 fastest = if turn > fastest.1 && turn < f32::INFINITY { (number, turn) } else { fastest };
             }
         }
@@ -79,7 +79,7 @@ impl SceneFile {
         let ropes =
             || self.ropes.iter().flat_map(|cord| cord.ends).filter(|&end| end == Some(Body::Cloth(number))).count();
         let load = if !holds {
-            boxes?.mass
+            boxes?.weight()?
         } else if cloth.fixed.is_empty() {
             point * cloth.count()? as f32 / ropes() as f32
         } else {
@@ -107,9 +107,10 @@ impl SceneFile {
     }
 }
 
-/// How fast ropes so long \[m\] turn a body to and fro under such a load \[N\], at the most \[rad/s\].
-fn turn(boxes: &Boxes, load: f32, long: f32) -> f32 {
-    let Vec3 { x, y, z } = boxes.sides * boxes.sides;
+/// How fast ropes so long \[m\] turn a body to and fro under such a load \[N\], at the most \[rad/s\]; none, if that takes its mesh to know.
+fn turn(boxes: &Boxes, load: f32, long: f32) -> Option<f32> {
+    let (sides, mass) = boxes.size(None).zip(boxes.weight())?;
+    let Vec3 { x, y, z } = sides * sides;
     let across = sqrt(x + y + z - max(max(x, y), z));
-    sqrt(load / boxes.mass * (6.0 / across + 3.0 / long))
+    Some(sqrt(load / mass * (6.0 / across + 3.0 / long)))
 }

@@ -148,7 +148,8 @@ impl Start {
             let form = form.map_err(|error| SceneError::value(at(), error).in_file(meshes.path))?;
             let number = self.hulls.len() as u16;
             let lent = form.as_ref().map(|(form, _)| (number, form));
-            let (particles, bodies) = boxes.make(self.particles.len() as u32, lent);
+            let size = boxes.size(mesh.as_deref()).unwrap_or_default();
+            let (particles, bodies) = boxes.make(self.particles.len() as u32, size, lent);
             if let Some((form, surface)) = form {
                 self.hulls.extend_from_slice(form.pieces());
                 pieces += boxes.number().saturating_mul(form.pieces().len() as u64);
@@ -159,7 +160,7 @@ impl Start {
                 return Err(SceneError::value(at(), message).in_file(meshes.path));
             }
             if !particles.iter().all(Particle::is_sound) {
-                let message = "leaves some particles too little mass, or puts them beyond the range of a 32-bit float";
+                let message = "leaves some particles too little mass or too much, or puts them beyond the range of a 32-bit float";
                 return Err(SceneError::value(format!("boxes[{i}]"), message).in_file(meshes.path));
             }
             self.blocks.push(self.particles.len());

@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 /// The most corners that a hull may have.
 pub(super) const CORNERS: usize = 64;
 /// The most corners that a face of it may have.
-pub(super) const SIDES: usize = 16;
+pub(super) const SIDES: usize = 32;
 /// The most faces that it may have: as many as triangles over so many corners.
 pub(super) const FACES: usize = 2 * CORNERS - 4;
 
@@ -45,7 +45,7 @@ pub struct HullFace {
     pub normal: Vec3,
     /// How far from the centroid it is along that \[m\].
     pub offset: f32,
-    /// Where the numbers of its corners begin in the hull's loops, and how many there are, from 3 to 16.
+    /// Where the numbers of its corners begin in the hull's loops, and how many there are, from 3 to 32.
     pub first: u16,
     /// See `first`.
     pub count: u16,
@@ -114,7 +114,7 @@ impl<'a> Hull<'a> {
             (
                 !self.faces.iter().all(face),
                 "faces",
-                "have to be of 3 to 16 corners around the origin, with unit normals",
+                "have to be of 3 to 32 corners around the origin, with unit normals",
             ),
             (!self.loops.iter().all(corner), "loops", "have to be numbers of corners"),
             (!self.edges.iter().all(edge), "edges", "have to be numbers of corners and faces"),

@@ -25,7 +25,7 @@ pub enum HullError {
     Flat,
     /// The hull has more than 64 corners.
     TooManyCorners,
-    /// A face of the hull has more than 16 corners.
+    /// A face of the hull has more than 32 corners.
     TooManySides,
     /// Some are so near each other that rounding decides on the faces.
     Unclear,
@@ -37,7 +37,7 @@ impl fmt::Display for HullError {
             Self::NotFinite => "has corners that are not finite, or too far away",
             Self::Flat => "is flat: a hull needs four corners that are not in a plane",
             Self::TooManyCorners => "has more than 64 corners in its convex hull",
-            Self::TooManySides => "has a face of more than 16 corners in its convex hull",
+            Self::TooManySides => "has a face of more than 32 corners in its convex hull",
             Self::Unclear => "has corners so near each other that its convex hull cannot be told",
         })
     }
