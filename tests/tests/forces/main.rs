@@ -6,6 +6,7 @@ mod files;
 mod laws;
 mod near;
 mod pressure;
+mod sinks;
 mod slopes;
 mod sums;
 mod wind;
