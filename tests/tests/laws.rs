@@ -69,6 +69,7 @@ mod sheets;
 mod shell_crushes;
 mod shell_meshes;
 mod sleep;
+mod slender;
 mod soft_bodies;
 mod sound;
 mod springs;

@@ -23,6 +23,9 @@ const HIGH: f32 = 0.25;
 const PARTS: usize = 16;
 /// Triangles of a mesh that are one of them, at the most.
 const FACES: usize = 12;
+/// What is so many times as long as it is thick is looked at in parts where it lies on much, so many at the most along each side.
+const SLENDER: f32 = 4.0;
+const SPANS: f32 = 8.0;
 /// The cosine of the angle within which two faces are one.
 const ONE_FACE: f32 = 0.9999;
 /// How far from a place of the scenery another is at the most that is nearer to what is above it, as a share of how high that is.
@@ -268,15 +271,29 @@ impl Visit<'_> {
 
     /// Looks for the places of the scenery that come nearest to the body's edges and faces.
     fn scenery(&mut self, bodies: &mut Bodies<'_>) {
-        for part in &self.parts(bodies) {
-            self.part(bodies, part);
+        let (middle, half) = (self.form.middle(self.body), self.form.half(self.body));
+        let (parts, left_out) = self.parts(bodies, (middle, half));
+        let lengths = spans(half);
+        if left_out == 0 || lengths == [1; 3] {
+            bodies.report.caps.contacts += left_out;
+            parts.iter().for_each(|part| self.part(bodies, part));
+            return;
+        }
+        // What is long or wide lies on more than there is room for at a time.
+        let span = half / Vec3::from(lengths.map(f32::from));
+        for number in 0..lengths.iter().product() {
+            let [x, y, z] = [number % lengths[0], number / lengths[0] % lengths[1], number / lengths[0] / lengths[1]];
+            let place = span * (Vec3::from([x, y, z].map(f32::from)) * 2.0 + 1.0) - half;
+            let (parts, left_out) = self.parts(bodies, (middle + self.body.rotation * place, span));
+            bodies.report.caps.contacts += left_out;
+            parts.iter().for_each(|part| self.part(bodies, part));
         }
     }
 
-    /// The parts of the scenery that the piece may touch elsewhere than by its corners: of more than there is room for the nearest.
-    fn parts(&self, bodies: &mut Bodies<'_>) -> heapless::Vec<Part, PARTS> {
+    /// The parts of the scenery that the piece may touch elsewhere than by its corners, near the box around it or a part of that, told by its middle and half its
+    /// sides: of more than there is room for the nearest. Counts those that are left out.
+    fn parts(&self, bodies: &Bodies<'_>, (middle, half): (Vec3, Vec3)) -> (heapless::Vec<Part, PARTS>, u64) {
         let (body, colliders, at) = (self.body, bodies.colliders, bodies.substep.during[0]);
-        let (middle, half) = (self.form.middle(body), self.form.half(body));
         let over = Over { form: &self.form, body, colliders, at, faces: &[] };
         let (mut parts, mut left_out) = (heapless::Vec::<Part, PARTS>::new(), 0);
         colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
@@ -299,15 +316,18 @@ impl Visit<'_> {
                 }
             }
         });
-        bodies.report.caps.contacts += left_out;
-        parts
+        (parts, left_out)
     }
 
     /// Looks for the place of one of them that comes nearest to the piece.
     fn part(&mut self, bodies: &mut Bodies<'_>, part: &Part) {
         let (body, at) = (self.body, bodies.substep.during[0]);
         let over = Over { form: &self.form, body, colliders: bodies.colliders, at, faces: &part.faces };
-        let Some(near) = over.closest(part.contact, self.reach) else { return };
+        let Some(mut near) = over.closest(part.contact, self.reach) else { return };
+        if near.turned && spans(self.form.half(body)) != [1; 3] && self.is_seam(bodies, &near.contact) {
+            let Some(other) = self.beyond(bodies, &near.contact) else { return };
+            near = other;
+        }
         let Near { contact, on, depth, turned } = near;
         let normal = if turned { self.face(on, contact.normal) } else { contact.normal };
         let out = body.rotation.transpose() * -normal;
@@ -323,6 +343,18 @@ impl Visit<'_> {
         if dot(facing, out) > ALIKE {
             self.rims(bodies, body.rotation * -facing, [on, facing], depth);
         }
+    }
+
+    /// The place nearest to the piece of all triangles that meet at a place of the scenery: what is long lies across a ridge near the end of one of them, over which
+    /// that one alone would let it by.
+    fn beyond(&self, bodies: &Bodies<'_>, end: &Contact) -> Option<Near> {
+        let (body, colliders, at) = (self.body, bodies.colliders, bodies.substep.during[0]);
+        let mut faces = heapless::Vec::<u32, FACES>::new();
+        colliders.contacts(end.point, 0.1 * self.level(), at, &mut |contact| {
+            // What finds no room is no part of it.
+            let _ = faces.push(contact.face);
+        });
+        Over { form: &self.form, body, colliders, at, faces: &faces }.closest(*end, self.reach)
     }
 
     /// Tells whether corners do all that a flat face of the scenery would, or a seam in it: who stands on four hangs over nothing.
@@ -500,6 +532,12 @@ impl Visit<'_> {
         self.slots[number].count = 0;
         self.slot(bodies, contact)
     }
+}
+
+/// Into how many parts something is divided along each of its sides, of which these are half, if it is many times as long or wide as it is thick.
+fn spans(half: Vec3) -> [u8; 3] {
+    let least = min(half.x, min(half.y, half.z));
+    half.to_array().map(|half| (half / (SLENDER * least)).clamp(1.0, SPANS) as u8)
 }
 
 /// Leaves out one of four points on a face for another spot; tells whether it is not that which holds the body least: the highest if it is much higher than
