@@ -1,5 +1,6 @@
 //! Constraints: how stiff each is, how it is solved, how far its own weight stretches it, and what sub-steps buy.
 
+use super::bodies;
 use super::fall::{self, Fall};
 use super::part::place;
 use super::statics::Hanging;
@@ -7,7 +8,6 @@ use super::words::{plain, time};
 use crate::report::words::short;
 use crate::stall::gravity;
 use pointmass::ConstraintKind;
-use pointmass::constrain::RigidBox;
 use pointmass::scene::Model;
 use pointmass::stability::Limit;
 use serde::Serialize;
@@ -17,23 +17,12 @@ use std::fmt::Write;
 /// The share by which a constraint may be off.
 pub(crate) const FAULT: f64 = 0.01;
 
-/// The most boxes that a pile is looked at for.
-const PILE: usize = 10;
 /// The share of a box that a pile sinks by from which on it has been seen to fall through itself without friction; with friction from three times
 /// that on.
-const FALLS: f64 = 0.09;
-/// The turn of a box in a sub-step from which on it may be met too late \[rad\].
-const TURN: f64 = 0.5;
-
+const FALLS: f64 = 0.07;
 /// The share of a link by which gravity takes a rope's particles on in a sub-step, from which on slack ropes may tremble for ever. Which of them do hangs on
 /// their drag: some at 0.1, most at 0.14.
 const TREMBLES: f64 = 0.08;
-
-/// By how much a pile of so many boxes sinks where it does so most, for each m/s² of gravity and s² of a sub-step \[m\]: as measured
-/// within a twentieth of what three to twenty do, and two.
-fn sinks(pile: usize) -> f64 {
-    (0.246 * pile as f64 - 0.59).max(0.03)
-}
 
 /// Constraints of one kind that follow each other in a scene, or a sheet; with the worst of each figure.
 #[derive(Debug, Serialize)]
@@ -62,26 +51,29 @@ pub(crate) struct Hold {
     pub(crate) half: Option<f64>,
     /// How fast boxes may turn that strike something with a corner when they have fallen by their own size \[rad/s\].
     #[serde(skip)]
-    tumbles: f64,
+    pub(super) tumbles: f64,
+    /// How fast the fastest of the boxes is to begin with \[m/s\].
+    #[serde(skip)]
+    pub(super) speed: f64,
     /// The longest sub-step in which slack ropes come to rest \[s\].
     #[serde(skip)]
-    calm: f64,
-    /// The number of boxes in the pile that `owes` is told of: of all there are, ten at the most; none: there is but one.
+    pub(super) calm: f64,
+    /// The number of boxes in the pile that `owes` is told of: the tallest to begin with, and all there are up to ten; none: there is but one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) pile: Option<usize>,
     /// The number of constraints of that kind that follow the first.
     #[serde(skip)]
-    more: usize,
+    pub(super) more: usize,
     /// True if they go where a script says, whatever pulls at them.
     #[serde(skip)]
     pub(crate) leads: bool,
     #[serde(skip)]
-    solving: Solving,
+    pub(super) solving: Solving,
 }
 
 /// How a sub-step solves constraints.
 #[derive(Debug, Default)]
-struct Solving {
+pub(super) struct Solving {
     /// The words for that; none for boxes.
     words: &'static str,
     /// True if they are links of known lengths.
@@ -151,6 +143,7 @@ impl Hold {
             fall: Fall::of(model, kind, held),
             half: None,
             tumbles: 0.0,
+            speed: 0.0,
             pile: None,
             more: group.len() - 1,
             leads: kind.leads(),
@@ -159,32 +152,6 @@ impl Hold {
                 links: kind.lengths().next().is_some(),
                 iterates: kind.iterates(),
             },
-        }
-    }
-
-    /// Boxes of one size.
-    fn boxes(model: &Model, group: &[RigidBox]) -> Self {
-        let half = f64::from(group[0].half.min_element());
-        let weight = f64::from(gravity(model).length());
-        let pile = Some(model.constraints.1.boxes.len().min(PILE)).filter(|&boxes| boxes > 1);
-        Self {
-            calm: f64::INFINITY,
-            place: place(model, 0, group[0].first as usize),
-            kind: "boxes",
-            count: group.len(),
-            particles: group.iter().map(|of| of.count as usize).sum(),
-            stiffness: None,
-            rate: None,
-            gives: 0.0,
-            owes: pile.map_or(0.0, sinks) * weight / (2.0 * half),
-            estimated: false,
-            fall: None,
-            half: Some(half),
-            tumbles: (4.0 * weight * half).sqrt() / half,
-            pile,
-            more: 0,
-            leads: false,
-            solving: Solving::default(),
         }
     }
 
@@ -217,7 +184,7 @@ impl Hold {
         let about = if self.estimated { "about " } else { "" };
         let off = format!("{about}{} %", short(100.0 * self.fault(h)));
         if let Some(half) = self.half {
-            let (speed, turn) = (plain(half / h), plain(TURN / h));
+            let (speed, turn) = (plain(half / h), plain(bodies::TURN / h));
             let pile = self.pile.map_or(String::new(), |pile| format!("a pile of {pile} sinks by {off} of a box; "));
             return format!("{pile}{speed} m/s go half through, {turn} rad/s are too fast");
         }
@@ -257,20 +224,6 @@ impl Hold {
     pub(crate) fn iterations(&self, h: f64) -> u64 {
         let rate = h * self.rate.unwrap_or(0.0);
         (0.5 * rate.hypot(1.0) * 2e4f64.ln()).ceil() as u64
-    }
-
-    /// The warning about sub-steps of `h` \[s\] in which boxes that fall turn too far, and the sub-steps that are short enough for that \[s\]; or none.
-    pub(crate) fn tumbling(&self, h: f64) -> Option<(String, f64)> {
-        let (turn, enough) = (self.tumbles * h, TURN / self.tumbles);
-        (turn > TURN * (1.0 + 1e-6)).then(|| {
-            let (name, now) = (self.name(), time(h));
-            let told = format!(
-                "in sub-steps of {now} {name} that have fallen by their own size may turn by {} rad, and sink into what they strike by a \
-                 twentieth of their size and more",
-                plain(turn)
-            );
-            (told, enough)
-        })
     }
 
     /// The warning about sub-steps of `h` \[s\] in which slack ropes do not come to rest, and the sub-steps that are short enough for that \[s\]; or none.

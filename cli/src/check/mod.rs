@@ -6,6 +6,7 @@
 //! `study` is what it came to, with a `verdict` on each method, which `advice` puts into words, and `report` and `plot` tell.
 
 mod advice;
+mod bodies;
 mod body;
 mod bounds;
 mod contact;

@@ -11,7 +11,8 @@ use std::fmt::Write;
 /// A scene under gravity \[m/s²\], of particles and whatever else.
 fn model(gravity: f64, particles: &str, rest: &str) -> Model {
     let text = format!(
-        r#"{{"forces": [{{"gravity": {{"acceleration": [0, -{gravity}, 0]}}}}, {{"drag": {{}}}}], "particles": [{particles}], {rest}}}"#
+        r#"{{"forces": [{{"gravity": {{"acceleration": [0, {}, 0]}}}}, {{"drag": {{}}}}], "particles": [{particles}], {rest}}}"#,
+        -gravity
     );
     let file = SceneFile::from_json("a.json", &text).unwrap_or_else(|error| panic!("{error}: {text}"));
     Model::load(&file, "a.json", &mut crate::load::Disk).expect("a sound scene")
@@ -279,6 +280,37 @@ fn piles_of_boxes_sink_as_deep_as_it_is_said() {
         let said = hold.fault(1.0 / 60.0 / f64::from(substeps));
         let least = if count == 10 { 0.9 } else { 0.0 };
         assert!((least..1.1).contains(&(sinks / said)), "{gravity} {side} {count} {substeps}: {sinks}, said {said}");
+    }
+}
+
+/// The tallest pile counts, wherever gravity pulls; what lies beside it or far above is not on it. Of few boxes all may come to lie on each other.
+#[test]
+fn piles_are_as_tall_as_they_stand() {
+    let boxes = |place: &str, count: &str, spacing: &str| {
+        format!(
+            r#"{{"sides": [0.3, 0.1, 0.2], "mass": 1, "position": {place}, "count": {count}, "spacing": {spacing}}}"#
+        )
+    };
+    let tall = boxes("[5, 0.05, 0]", "[1, 14, 1]", "[0.3, 0.1, 0.2]");
+    let low = boxes("[0, 0.05, 0]", "[6, 3, 6]", "[0.31, 0.1, 0.21]");
+    let apart = boxes("[9, 0.05, 0]", "[1, 30, 1]", "[0.3, 0.2, 0.2]");
+    let bonded = (0..12).map(|i| {
+        boxes(&format!("[{}, {}, 3]", 0.14 * f64::from(i % 2), 0.05 + 0.1 * f64::from(i)), "[1, 1, 1]", "[1, 1, 1]")
+    });
+    let bonded = bonded.collect::<Vec<_>>().join(", ");
+    let aside = boxes("[5, 0, 0]", "[17, 1, 1]", "[0.3, 0.1, 0.2]");
+    for (all, gravity, pile) in [
+        (&tall, 9.8, 14),
+        (&low, 9.8, 10),
+        (&format!("{low}, {tall}"), 9.8, 14),
+        (&apart, 9.8, 10),
+        (&bonded, 9.8, 12),
+        (&aside, 9.8, 10),
+        (&tall, -9.8, 14),
+    ] {
+        let model = model(gravity, "", &format!(r#""boxes": [{all}]"#));
+        let holds = Hold::all(&model);
+        assert!(holds.iter().all(|hold| hold.pile == Some(pile)), "{all}: {:?}", holds[0].pile);
     }
 }
 
