@@ -225,7 +225,11 @@ impl Visit<'_> {
                 floor = Some(*contact);
             }
         });
-        let Some(floor) = floor else { return };
+        let Some(mut floor) = floor else { return };
+        // Nothing is between the middle and it, but rounding may have put it behind what it lies on.
+        if floor.distance <= 2.0 * floor.slack && dot(floor.normal, middle - floor.point) < 0.0 {
+            floor.normal = -floor.normal;
+        }
         self.put_near(bodies, &floor, place);
         if count > 1 {
             self.beside(bodies, (place, point + floor.normal * (0.5 * self.reach)), &floor);
