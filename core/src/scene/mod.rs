@@ -55,6 +55,10 @@ mod references;
 #[cfg(feature = "alloc")]
 mod remarks;
 #[cfg(feature = "alloc")]
+mod remarks_idle;
+#[cfg(feature = "alloc")]
+mod remarks_load;
+#[cfg(feature = "alloc")]
 mod remarks_look;
 mod response;
 #[cfg(feature = "alloc")]

@@ -1,11 +1,8 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
-use super::{Boxes, Cloth, Cord, Growth, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
-use crate::constrain::{ConstraintKind, Strands};
+use super::{Boxes, Cloth, Cord, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
 use crate::emit::{Spread, Varied};
-use crate::force::{ForceKind, Friction};
-use crate::math::{length, sqrt};
-use crate::reap::ReaperKind;
+use crate::force::Friction;
 use crate::shape::{Aabb, Shape, Surface};
 use alloc::format;
 use alloc::string::String;
@@ -21,10 +18,6 @@ pub(super) const MOST: usize = 1000;
 
 /// Sub-steps that a step may have.
 pub(super) const MOST_SUBSTEPS: u32 = 1000;
-
-/// Balls may be so many times as heavy as others that bear them in the sub-steps that contacts by position usually take: two and three on top of
-/// each other of which the upper one weighs 40 times as much lie still, with 100 times in steps of 1/24 s they do not.
-const UNEVEN: f32 = 50.0;
 
 impl SceneFile {
     /// Remarks on what can be run but is hardly meant, each by its path in the file; the first thousand.
@@ -99,57 +92,6 @@ impl SceneFile {
         }
     }
 
-    /// A remark on balls that weigh too much for others that they may come to lie on: what bears a heavy one comes through light ones only bit by bit.
-    fn uneven_balls(&self) -> Option<String> {
-        let Some(Response::Position(_)) = self.contacts else { return None };
-        let balls = self.particles.iter().filter(|ball| ball.radius > 0.0 && !ball.fixed).map(|ball| [ball.mass; 2]);
-        let born = self.emitters.iter().filter(|emitter| emitter.radius.mean > 0.0 && !emitter.fixed).map(|emitter| {
-            let Varied { mean, half_width } = emitter.mass;
-            [mean - half_width.abs(), mean + half_width.abs()]
-        });
-        let all = balls.chain(born).filter(|[least, _]| *least > 0.0);
-        let [least, most] = all.fold([f32::INFINITY, 0.0], |[a, b], [c, d]| [a.min(c), b.max(d)]);
-        let uneven = || {
-            format!(
-                "balls of {most} kg weigh more than {UNEVEN} times as much as those of {least} kg, into which they may sink, and which they may throw about; smaller steps help, `impulse` does not sink"
-            )
-        };
-        (most > UNEVEN * least).then(uneven)
-    }
-
-    /// A remark on balls that meet by impulse above rigid bodies, which are met after them: those that lie on each other are pressed into what bears them, whatever the steps.
-    fn pressed_in(&self) -> Option<String> {
-        let Some(Response::Impulse {}) = self.contacts else { return None };
-        let balls = self.particles.iter().filter(|ball| ball.radius > 0.0 && !ball.fixed).count();
-        let born = self.emitters.iter().filter(|emitter| emitter.radius.mean > 0.0 && !emitter.fixed).count();
-        let press = "balls that lie on each other are pressed into the boxes that bear them, and through them; `position` keeps them out";
-        (!self.boxes.is_empty() && balls + 2 * born > 1).then(|| press.into())
-    }
-
-    /// A remark on bodies that weigh too much for others that they may come to lie on: in a sub-step of h a body sinks into what bears it by the ratio of
-    /// their masses times g h² / 4, as measured, and from a few hundredths of its size on through it.
-    fn uneven_boxes(&self) -> Option<String> {
-        /// The share of the smallest side that one may sink in.
-        const SHARE: f32 = 0.01;
-        let free = self.boxes.iter().filter(|boxes| !boxes.fixed);
-        let known: Vec<_> = free.filter_map(|boxes| Some((boxes.weight()?, boxes.size(None)?.min_element()))).collect();
-        let &(heaviest, _) = known.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let &(lightest, side) = known.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let (taken, pull) = (self.substeps() as f32, length(self.pull()));
-        let h = self.run.dt as f32 / taken;
-        let depth = 0.25 * (heaviest / lightest) * pull * h * h;
-        let room = SHARE * side;
-        let sinks = || {
-            let needed = (taken * sqrt(depth / room)) as u32;
-            let needed = needed.saturating_add(1);
-            format!(
-                "bodies of {heaviest} kg sink into those of {lightest} kg that bear them, and through them at last; {}",
-                enough(needed)
-            )
-        };
-        (depth > room && heaviest > lightest).then(sinks)
-    }
-
     /// Remarks on springs.
     fn add_springs(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
         for (i, spring) in self.springs.iter().enumerate() {
@@ -157,92 +99,6 @@ impl SceneFile {
             add(format_args!("springs[{i}].ks"), odd_strength(spring.ks));
             add(format_args!("springs[{i}].kd"), odd_strength(spring.kd));
         }
-    }
-
-    /// Remarks on bodies that begin in one place.
-    fn add_heaps(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
-        let is_scattered = |boxes: &Boxes| boxes.scatter.is_some_and(|scatter| scatter.position > 0.0);
-        let free = self.boxes.iter().enumerate().filter(|(_, boxes)| !boxes.fixed && !is_scattered(boxes));
-        let mut places = Vec::new();
-        for (i, boxes) in free {
-            let spacing = boxes.spacing.unwrap_or(Vec3::ONE).to_array();
-            let axes = ["x", "y", "z"].into_iter().zip(boxes.count.into_iter().zip(spacing));
-            let heap = axes.filter(|(_, (count, spacing))| *count > 1 && *spacing == 0.0).map(|(name, _)| name).next();
-            let all =
-                |name| format!("0 along {name} puts them into each other, and what begins so need not come apart");
-            add(format_args!("boxes[{i}].spacing"), heap.map(all));
-            // Zero has two signs.
-            places.push(((boxes.position + Vec3::ZERO).to_array().map(f32::to_bits), i));
-        }
-        places.sort_unstable();
-        for pair in places.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-            let [before, i] = [pair[0].1, pair[1].1];
-            let same = format!("it is that of boxes[{before}], and what begins in each other need not come apart");
-            add(format_args!("boxes[{i}].position"), Some(same));
-        }
-    }
-
-    /// A remark on what weighs too much for a sheet with thickness that hangs by some of its points and that it may come to lie on: in sub-steps of h it sinks
-    /// into it by its mass over that of a point times g h² / 4, as measured within a factor of two, a body through it from the thickness on, the points of
-    /// another sheet, which find the way between its own, from a 32nd of that.
-    fn heavy_on_cloth(&self, cloth: &Cloth) -> Option<String> {
-        if cloth.fixed.is_empty() {
-            return None;
-        }
-        let (thickness, point) = (cloth.thickness.filter(|&thickness| thickness > 0.0)?, cloth.point_mass()?);
-        let boxes = self.boxes.iter().filter(|boxes| !boxes.fixed).filter_map(Boxes::weight);
-        let balls = self.particles.iter().filter(|ball| !ball.fixed && ball.radius > 0.0).map(|ball| ball.mass);
-        let others = self.cloths.iter().filter(|other| other.fixed.is_empty() && other.thickness.is_some());
-        let points = others.filter_map(Cloth::point_mass).filter(|&other| other > point);
-        let [body, sheet] = [boxes.chain(balls).fold(0.0, f32::max), points.fold(0.0, f32::max)];
-        let pull = length(self.pull());
-        let depth = |load: f32, substeps: u32| {
-            let h = self.run.dt as f32 / substeps as f32;
-            0.25 * (load / point) * pull * h * h
-        };
-        let taken = self.substeps();
-        let mut sinks = [(body, 1.0, "what weighs"), (sheet, 1.0 / 32.0, "a sheet whose points weigh")].into_iter();
-        sinks.find_map(|(load, share, what)| {
-            let least = (taken..=MOST_SUBSTEPS).find(|&substeps| !(depth(load, substeps) > share * thickness));
-            let says = || {
-                let helps = least.map_or("it is far too much".into(), enough);
-                format!("{what} {load} kg sinks into it, whose points weigh {point} kg each, or falls through; {helps}")
-            };
-            (least != Some(taken)).then(says)
-        })
-    }
-
-    /// A remark on a plate: a sheet that is held by some of its points and that stands by its stiffness against bending. A sub-step solves what is linear
-    /// in its way, and a cell of length ℓ that turns through g h² is longer by (g h² / ℓ)² / 2 of itself then; where what that pulls with is more than its
-    /// weight it sags too far, or shakes.
-    fn long_for_plate(&self, cloth: &Cloth) -> Option<String> {
-        /// The share of its weight that it pulls with from which on it shows, as measured.
-        const SHOWS: f32 = 2.0;
-        /// The share of its longer side that bending bears by itself.
-        const STANDS: f32 = 0.25;
-        let (params, sheet) = (cloth.shell_params()?, cloth.sheet()?);
-        let [a, b] = sheet.sides;
-        let density = cloth.by_area().unwrap_or(cloth.mass / length(a.cross(b)));
-        let (pull, taken) = (length(self.pull()), self.substeps() as f32);
-        let longest = sheet.sides.map(length).into_iter().fold(0.0, f32::max);
-        let (weight, share) = (density * pull, STANDS * longest);
-        if cloth.fixed.is_empty() || !(params.bending > weight * share * share * share) {
-            return None;
-        }
-        let cells = sheet.sides.into_iter().zip(sheet.cells).map(|(side, cells)| length(side) / cells as f32);
-        let h = self.run.dt as f32 / taken;
-        let turns = pull * h * h / cells.fold(f32::INFINITY, f32::min);
-        let stretch = params.stretch.into_iter().fold(0.0, f32::max);
-        let excess = 0.5 * turns * turns * stretch / (SHOWS * weight * longest);
-        let shakes = || {
-            let needed = (taken * sqrt(sqrt(excess))) as u32;
-            let needed = needed.saturating_add(1);
-            format!(
-                "it is so stiff that what it stretches by as it bends in a sub-step outweighs it: it hangs too far, or shakes; {}",
-                enough(needed)
-            )
-        };
-        (excess > 1.0 && excess < f32::INFINITY).then(shakes)
     }
 
     /// A remark on what reaches out of the room through one side and not through the opposite one, where it would come in again.
@@ -261,14 +117,6 @@ impl SceneFile {
         Some(format!(
             "it reaches out of the room along {name}, and does not act through its sides; put another one where it comes in again"
         ))
-    }
-
-    /// The sum of all gravity \[m/s²\].
-    pub(super) fn pull(&self) -> Vec3 {
-        self.forces.iter().fold(Vec3::ZERO, |sum, force| match force {
-            ForceKind::Gravity(gravity) => sum + gravity.acceleration,
-            _ => sum,
-        })
     }
 
     /// Remarks on the elasticity of what the scene begins with.
@@ -310,103 +158,6 @@ impl SceneFile {
             .chain(cloths)
             .chain(bodies)
             .fold(own, |(sum, is_all), more| (sum.saturating_add(more.unwrap_or(0)), is_all && more.is_some()))
-    }
-
-    /// Remarks on parts that do nothing.
-    fn add_idle(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
-        for (i, constraint) in self.constraints.iter().enumerate() {
-            if let ConstraintKind::Distance(distance) = constraint {
-                let [a, b] = distance.ends;
-                let itself = (a == b).then(|| format!("it holds particle {a} to itself, so it does nothing"));
-                add(format_args!("constraints[{i}].distance.ends"), itself);
-            }
-            let ConstraintKind::Strands(strands) = constraint else { continue };
-            for (end, name) in ["root", "tip"].into_iter().enumerate() {
-                let nothing =
-                    || format!("no {name} is held or clamped by two fixed neighbours, so nothing is turned there");
-                add(format_args!("constraints[{i}].strands.turning"), self.is_idly_turned(strands, end).then(nothing));
-            }
-        }
-        for (i, tuft) in self.strands.iter().enumerate() {
-            let loose = tuft.motion.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
-            let nothing = || "none of its points is fixed, so nothing follows it".into();
-            add(format_args!("strands[{i}].motion"), loose.then(nothing));
-            let loose = tuft.attach.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
-            let nothing = || "none of its points is fixed, so nothing of it is tied; name them in fixed".into();
-            add(format_args!("strands[{i}].attach"), loose.then(nothing));
-        }
-        for (i, cord) in self.ropes.iter().enumerate() {
-            let nothing = || "none of its points is fixed, so nothing follows it".into();
-            add(format_args!("ropes[{i}].motion"), (cord.motion.is_some() && cord.fixed.is_empty()).then(nothing));
-        }
-        for (i, sink) in self.sinks.iter().enumerate() {
-            let idle = sink.intensity != 0.0 && [sink.ca, sink.la, sink.qa] == [0.0; 3];
-            let nothing = || "it divides by ca, la and qa, which are all zero, so it pulls nobody".into();
-            add(format_args!("sinks[{i}].intensity"), idle.then(nothing));
-            let endless = sink.intensity != 0.0 && !idle && [sink.ca, sink.softening] == [0.0; 2];
-            let bounded = || {
-                "0 leaves its pull without bound at its surface, from which energies count, so these are infinite; say softening, or another ca".into()
-            };
-            add(format_args!("sinks[{i}].ca"), endless.then(bounded));
-        }
-        for (i, reaper) in self.reapers.iter().enumerate() {
-            let narrow = matches!(reaper, ReaperKind::Dense(dense) if dense.radius == 0.0);
-            let nobody = || "nobody is within 0 m of another who is not in the same place".into();
-            add(format_args!("reapers[{i}].dense.radius"), narrow.then(nobody));
-        }
-        for (i, goal) in self.goals.iter().enumerate() {
-            let infinite = matches!(goal.shape, Shape::Plane(_));
-            let point = || "a plane is infinite, so all are led to its one point".into();
-            add(format_args!("goals[{i}].shape"), infinite.then(point));
-        }
-    }
-}
-
-impl SceneFile {
-    /// Remarks on the first drag of a list where the scene has forces, of which none looks at it.
-    fn add_unread(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
-        let reads = |force: &ForceKind| matches!(force, ForceKind::Drag(_) | ForceKind::Wind(_));
-        if self.forces.is_empty() || self.forces.iter().any(reads) {
-            return;
-        }
-        let mut look = |list: &str, drags: &mut dyn Iterator<Item = f32>| {
-            let Some((i, drag)) = drags.enumerate().find(|(_, drag)| *drag != 0.0) else { return };
-            let nothing =
-                || format!("{drag} brakes nobody, for no force looks at it; add drag or wind to the forces, or take 0");
-            add(format_args!("{list}[{i}].drag"), Some(nothing()));
-        };
-        look("particles", &mut self.particles.iter().map(|particle| particle.drag));
-        look("emitters", &mut self.emitters.iter().map(|emitter| emitter.drag.mean));
-        look("boxes", &mut self.boxes.iter().map(|boxes| boxes.drag));
-    }
-
-    /// The drag in still air that acts beside a wind on the same coefficients, by its place in the list of forces.
-    fn doubled_drag(&self) -> Option<usize> {
-        let blows = |force: &ForceKind| matches!(force, ForceKind::Wind(wind) if wind.coefficient.is_none());
-        let drag = self.forces.iter().position(|force| matches!(force, ForceKind::Drag(_)))?;
-        self.forces.iter().any(blows).then_some(drag)
-    }
-
-    /// Tells whether strands turn an end, root or tip, that is neither held nor clamped in any of them: one of the two particles there, of the file's
-    /// own, is not fixed.
-    fn is_idly_turned(&self, strands: &Strands<Vec<u32>, Vec<u32>>, end: usize) -> bool {
-        let is_free = |&at: &usize| {
-            let number = strands.particles.get(at).and_then(|&number| usize::try_from(number).ok());
-            number.and_then(|number| self.particles.get(number)).is_some_and(|particle| !particle.fixed)
-        };
-        let is_loose = |[first, last]: [usize; 2]| {
-            let edge = if end == 0 { [first, first + 1] } else { [last - 1, last.saturating_sub(2)] };
-            edge.iter().any(is_free)
-        };
-        strands.turning[end] != 0.0 && !strands.held[end] && strands.strands().all(is_loose)
-    }
-}
-
-/// What helps where a remark asks for so many sub-steps.
-pub(super) fn enough(needed: u32) -> String {
-    match needed {
-        ..=MOST_SUBSTEPS => format!("run.substeps of {needed} are enough"),
-        _ => format!("no number of sub-steps is enough, of which run.substeps may say {MOST_SUBSTEPS}"),
     }
 }
 

@@ -1,0 +1,100 @@
+//! Remarks on parts of a scene that do nothing.
+
+use super::{Growth, SceneFile};
+use crate::constrain::{ConstraintKind, Strands};
+use crate::force::ForceKind;
+use crate::reap::ReaperKind;
+use crate::shape::Shape;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt::Arguments;
+
+impl SceneFile {
+    /// Remarks on parts that do nothing.
+    pub(super) fn add_idle(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        for (i, constraint) in self.constraints.iter().enumerate() {
+            if let ConstraintKind::Distance(distance) = constraint {
+                let [a, b] = distance.ends;
+                let itself = (a == b).then(|| format!("it holds particle {a} to itself, so it does nothing"));
+                add(format_args!("constraints[{i}].distance.ends"), itself);
+            }
+            let ConstraintKind::Strands(strands) = constraint else { continue };
+            for (end, name) in ["root", "tip"].into_iter().enumerate() {
+                let nothing =
+                    || format!("no {name} is held or clamped by two fixed neighbours, so nothing is turned there");
+                add(format_args!("constraints[{i}].strands.turning"), self.is_idly_turned(strands, end).then(nothing));
+            }
+        }
+        for (i, tuft) in self.strands.iter().enumerate() {
+            let loose = tuft.motion.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
+            let nothing = || "none of its points is fixed, so nothing follows it".into();
+            add(format_args!("strands[{i}].motion"), loose.then(nothing));
+            let loose = tuft.attach.is_some() && tuft.fixed.is_empty() && matches!(tuft.form, Growth::Curve(_));
+            let nothing = || "none of its points is fixed, so nothing of it is tied; name them in fixed".into();
+            add(format_args!("strands[{i}].attach"), loose.then(nothing));
+        }
+        for (i, cord) in self.ropes.iter().enumerate() {
+            let nothing = || "none of its points is fixed, so nothing follows it".into();
+            add(format_args!("ropes[{i}].motion"), (cord.motion.is_some() && cord.fixed.is_empty()).then(nothing));
+        }
+        for (i, sink) in self.sinks.iter().enumerate() {
+            let idle = sink.intensity != 0.0 && [sink.ca, sink.la, sink.qa] == [0.0; 3];
+            let nothing = || "it divides by ca, la and qa, which are all zero, so it pulls nobody".into();
+            add(format_args!("sinks[{i}].intensity"), idle.then(nothing));
+            let endless = sink.intensity != 0.0 && !idle && [sink.ca, sink.softening] == [0.0; 2];
+            let bounded = || {
+                "0 leaves its pull without bound at its surface, from which energies count, so these are infinite; say softening, or another ca".into()
+            };
+            add(format_args!("sinks[{i}].ca"), endless.then(bounded));
+        }
+        for (i, reaper) in self.reapers.iter().enumerate() {
+            let narrow = matches!(reaper, ReaperKind::Dense(dense) if dense.radius == 0.0);
+            let nobody = || "nobody is within 0 m of another who is not in the same place".into();
+            add(format_args!("reapers[{i}].dense.radius"), narrow.then(nobody));
+        }
+        for (i, goal) in self.goals.iter().enumerate() {
+            let infinite = matches!(goal.shape, Shape::Plane(_));
+            let point = || "a plane is infinite, so all are led to its one point".into();
+            add(format_args!("goals[{i}].shape"), infinite.then(point));
+        }
+    }
+
+    /// Remarks on the first drag of a list where the scene has forces, of which none looks at it.
+    pub(super) fn add_unread(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        let reads = |force: &ForceKind| matches!(force, ForceKind::Drag(_) | ForceKind::Wind(_));
+        if self.forces.is_empty() || self.forces.iter().any(reads) {
+            return;
+        }
+        let mut look = |list: &str, drags: &mut dyn Iterator<Item = f32>| {
+            let Some((i, drag)) = drags.enumerate().find(|(_, drag)| *drag != 0.0) else { return };
+            let nothing =
+                || format!("{drag} brakes nobody, for no force looks at it; add drag or wind to the forces, or take 0");
+            add(format_args!("{list}[{i}].drag"), Some(nothing()));
+        };
+        look("particles", &mut self.particles.iter().map(|particle| particle.drag));
+        look("emitters", &mut self.emitters.iter().map(|emitter| emitter.drag.mean));
+        look("boxes", &mut self.boxes.iter().map(|boxes| boxes.drag));
+    }
+
+    /// The drag in still air that acts beside a wind on the same coefficients, by its place in the list of forces.
+    pub(super) fn doubled_drag(&self) -> Option<usize> {
+        let blows = |force: &ForceKind| matches!(force, ForceKind::Wind(wind) if wind.coefficient.is_none());
+        let drag = self.forces.iter().position(|force| matches!(force, ForceKind::Drag(_)))?;
+        self.forces.iter().any(blows).then_some(drag)
+    }
+
+    /// Tells whether strands turn an end, root or tip, that is neither held nor clamped in any of them: one of the two particles there, of the file's
+    /// own, is not fixed.
+    fn is_idly_turned(&self, strands: &Strands<Vec<u32>, Vec<u32>>, end: usize) -> bool {
+        let is_free = |&at: &usize| {
+            let number = strands.particles.get(at).and_then(|&number| usize::try_from(number).ok());
+            number.and_then(|number| self.particles.get(number)).is_some_and(|particle| !particle.fixed)
+        };
+        let is_loose = |[first, last]: [usize; 2]| {
+            let edge = if end == 0 { [first, first + 1] } else { [last - 1, last.saturating_sub(2)] };
+            edge.iter().any(is_free)
+        };
+        strands.turning[end] != 0.0 && !strands.held[end] && strands.strands().all(is_loose)
+    }
+}
