@@ -123,7 +123,7 @@ impl World {
         run.seed = args.seed.unwrap_or(run.seed);
         let (duration, dt, seed) = (args.duration.unwrap_or(run.duration), args.dt.unwrap_or(run.dt), run.seed);
         if let Some(name) = args.response.as_deref() {
-            file.contacts = respond(&file, name, dt);
+            answer(&mut file, name, dt);
         }
         let model = source.model(&file)?;
         if !model.has_balls() && file.contacts.is_some() {
@@ -203,6 +203,17 @@ fn threads(asked: Option<u16>, capacity: usize) -> Outcome<Option<ThreadPool>> {
         // One thread does it as well.
         Err(_) => Ok(None),
     }
+}
+
+/// Lets balls answer each other by the response of a name, and warns of what they do not do by it.
+fn answer(file: &mut SceneFile, name: &str, dt: f64) {
+    let said = file.contacts;
+    file.contacts = respond(file, name, dt);
+    // What the file says of contacts of its own was remarked on as it was read.
+    let remark = file.unasked_elasticity().filter(|_| said != file.contacts);
+    warn(
+        remark.map(|remark| format!("--response {name}: a damping of {remark} in the scene's own contacts")).as_slice(),
+    );
 }
 
 /// The response of a name: the scene's own, if it is that, else one with settings that suit the scene.

@@ -21,6 +21,7 @@ mod recorded;
 mod recorded_bodies;
 mod recordings;
 mod remarks;
+mod remarks_silent;
 mod robustness;
 mod round_trip;
 mod scenes;

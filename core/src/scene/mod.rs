@@ -55,6 +55,8 @@ mod references;
 #[cfg(feature = "alloc")]
 mod remarks;
 #[cfg(feature = "alloc")]
+mod remarks_contact;
+#[cfg(feature = "alloc")]
 mod remarks_idle;
 #[cfg(feature = "alloc")]
 mod remarks_load;

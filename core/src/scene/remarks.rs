@@ -55,6 +55,7 @@ impl SceneFile {
         }
         if let Some(Response::Force(penalty)) = self.contacts {
             add(format_args!("contacts.force.friction.static"), odd_friction(penalty.friction));
+            add(format_args!("contacts.force.damping"), self.unasked_elasticity());
         }
         for (i, material) in self.materials.iter().enumerate() {
             let friction = material.contact.friction.unwrap_or(Friction::NONE);
