@@ -167,7 +167,7 @@ fn look(args: &Render, world: &mut World, timing: &Timing, progress: &mut Progre
     let mut crowd = Crowd::new();
     for frame in 0..=timing.frames {
         timing.step_to(frame, world, progress, None, |_| ());
-        crowd.meet(&world.system);
+        crowd.meet(&world.system, &world.model.particles, world.file.particles.len());
     }
     (world.system, world.pace) = begin;
     let aspect = args.size.0 as f32 / args.size.1 as f32;

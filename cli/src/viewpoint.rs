@@ -3,7 +3,7 @@
 use crate::parse::number;
 use glam::{Quat, Vec3};
 use pointmass::shape::Aabb;
-use pointmass::{Heap, System};
+use pointmass::{Heap, Particle, System};
 use pointmass_draw::Camera;
 use std::f64::consts::TAU;
 
@@ -79,54 +79,82 @@ impl Viewpoint {
 /// Places that a run comes by, a bounded number of them.
 #[derive(Debug)]
 pub(crate) struct Crowd {
+    /// Particles that the scene begins with and that are fixed: whoever puts one somewhere means it to be seen.
+    placed: Balls,
+    /// Balls and bodies that the scene begins with, which are held against each other alone: however many sparks there are, these are no strays.
+    bodies: Balls,
+    /// All others.
+    loose: Balls,
+}
+
+/// Balls, of which one of `every` is kept.
+#[derive(Debug)]
+struct Balls {
     balls: Vec<(Vec3, f32)>,
-    /// One of so many places is kept.
     every: usize,
     met: usize,
 }
 
-impl Crowd {
+impl Balls {
     /// How many are kept at most.
     const MOST: usize = 1 << 17;
 
-    pub(crate) fn new() -> Self {
+    const fn new() -> Self {
         Self { balls: Vec::new(), every: 1, met: 0 }
     }
 
-    /// Takes note of where particles are.
-    pub(crate) fn meet(&mut self, system: &System<Heap>) {
+    fn meet(&mut self, place: Vec3, radius: f32) {
+        if place.is_finite() && self.met.is_multiple_of(self.every) {
+            self.balls.push((place, radius));
+        }
+        self.met += 1;
+        if self.balls.len() > Self::MOST {
+            self.balls = self.balls.iter().copied().step_by(2).collect();
+            self.every *= 2;
+        }
+    }
+}
+
+impl Crowd {
+    pub(crate) fn new() -> Self {
+        Self { placed: Balls::new(), bodies: Balls::new(), loose: Balls::new() }
+    }
+
+    /// Takes note of where particles are. The scene begins with `start`, of which so many are its own `particles`, and the others parts of bodies.
+    pub(crate) fn meet(&mut self, system: &System<Heap>, start: &[Particle], own: usize) {
         let particles = system.particles();
-        for (&place, &radius) in particles.position.iter().zip(particles.radius) {
-            if place.is_finite() && self.met.is_multiple_of(self.every) {
-                self.balls.push((place, radius));
-            }
-            self.met += 1;
-            if self.balls.len() > Self::MOST {
-                self.balls = self.balls.iter().copied().step_by(2).collect();
-                self.every *= 2;
-            }
+        let places = particles.position.iter().zip(particles.radius);
+        for ((&place, &radius), &serial) in places.zip(particles.serial) {
+            let group = match start.get(serial as usize) {
+                Some(Particle { fixed: true, .. }) => &mut self.placed,
+                Some(_) if radius > 0.0 || serial as usize >= own => &mut self.bodies,
+                _ => &mut self.loose,
+            };
+            group.meet(place, radius);
         }
     }
 
     /// The view of all that was met and of the boxes of scenery, in the direction of a camera and with its angle, for
     /// pictures `aspect` times as wide as high. `around` is whether it has to be so from all sides.
-    pub(crate) fn view(mut self, camera: Camera, scenery: &[Aabb], aspect: f32, around: bool) -> Viewpoint {
-        let reach = Aabb::around(self.balls.iter().map(|&(place, _)| place)).radius();
+    pub(crate) fn view(self, camera: Camera, scenery: &[Aabb], aspect: f32, around: bool) -> Viewpoint {
+        let [mut fixed, bodies, loose] = [self.placed, self.bodies, self.loose].map(|group| group.balls);
+        let all = fixed.iter().chain(&bodies).chain(&loose);
+        let reach = Aabb::around(all.map(|&(place, _)| place)).radius();
         let is_small = |scenery: &&Aabb| !(reach > 0.0) || scenery.radius() <= 4.0 * reach;
         let corners = scenery.iter().filter(is_small).flat_map(|&Aabb { min, max }| {
             (0..8).map(move |i| Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), min, max))
         });
-        let mut fixed: Vec<(Vec3, f32)> = corners.map(|corner| (corner, 0.0)).collect();
-        if fixed.is_empty() && self.balls.is_empty() {
+        fixed.extend(corners.map(|corner| (corner, 0.0)));
+        if fixed.is_empty() && bodies.is_empty() && loose.is_empty() {
             fixed.extend([(Vec3::splat(-0.5), 0.0), (Vec3::splat(0.5), 0.0)]);
         }
+        let mut all = [bodies, loose, fixed];
         if around {
             let axis = camera.up.try_normalize().unwrap_or(Vec3::Y);
-            let pivot = fit(camera, &self.balls, &fixed, aspect).middle;
-            self.balls = round(&self.balls, pivot, axis);
-            fixed = round(&fixed, pivot, axis);
+            let pivot = fit(camera, &all, aspect).middle;
+            all = all.map(|balls| round(&balls, pivot, axis));
         }
-        fit(camera, &self.balls, &fixed, aspect)
+        fit(camera, &all, aspect)
     }
 }
 
@@ -138,9 +166,9 @@ fn round(balls: &[(Vec3, f32)], pivot: Vec3, axis: Vec3) -> Vec<(Vec3, f32)> {
     (0..PARTS).map(turn).flat_map(turned).collect()
 }
 
-/// Moves a camera to where the four sides of its picture just hold everything: loose balls but for stray ones, and fixed
+/// Moves a camera to where the four sides of its picture just hold everything: two groups of balls but for the strays of each, and fixed
 /// ones whatever they are.
-fn fit(camera: Camera, loose: &[(Vec3, f32)], fixed: &[(Vec3, f32)], aspect: f32) -> Viewpoint {
+fn fit(camera: Camera, balls: &[Vec<(Vec3, f32)>; 3], aspect: f32) -> Viewpoint {
     /// How much is left free at the edges.
     const MARGIN: f32 = 1.06;
     let back = -camera.towards.try_normalize().unwrap_or(Vec3::NEG_Z);
@@ -152,8 +180,9 @@ fn fit(camera: Camera, loose: &[(Vec3, f32)], fixed: &[(Vec3, f32)], aspect: f32
         let height = |&(place, radius): &(Vec3, f32)| {
             place.dot(way) + slope * place.dot(back) + radius * (1.0 + slope * slope).sqrt()
         };
-        let fixed = fixed.iter().map(height).fold(f32::NEG_INFINITY, f32::max);
-        fixed.max(most(loose.iter().map(height).collect()))
+        let [bodies, loose, fixed] = balls.each_ref().map(|balls| balls.iter().map(height));
+        let fixed = fixed.fold(f32::NEG_INFINITY, f32::max);
+        fixed.max(most(bodies.collect())).max(most(loose.collect()))
     };
     let [left_most, right_most] = [-right, right].map(|way| side(way, slope));
     let [low_most, high_most] = [-up, up].map(|way| side(way, slope / aspect));
@@ -161,7 +190,7 @@ fn fit(camera: Camera, loose: &[(Vec3, f32)], fixed: &[(Vec3, f32)], aspect: f32
     let upright = 0.5 * (high_most - low_most);
     let wide = 0.5 * (right_most + left_most) / slope;
     let high = 0.5 * (high_most + low_most) / slope * aspect;
-    let depths = loose.iter().chain(fixed).map(|&(place, _)| place.dot(back)).collect::<Vec<_>>();
+    let depths = balls.iter().flatten().map(|&(place, _)| place.dot(back)).collect::<Vec<_>>();
     let middle_depth = median(depths);
     // A single point is looked at from a metre away.
     let distance = (wide.max(high) - middle_depth).max(1e-3);
@@ -237,7 +266,7 @@ mod tests {
         let part = |i: u32, k: u32| (i.wrapping_mul(k) >> 8) as f32 / 8_388_608.0 - 1.0;
         let ball =
             |i: u32| (Vec3::new(40.0 * part(i, 1_664_525), 3.0 * part(i, 22_695_477), part(i, 134_775_813)), 0.1);
-        crowd.balls = (0..2000).map(|i| (Vec3::new(100.0, -7.0, 3.0) + ball(i).0, ball(i).1)).collect();
+        crowd.loose.balls = (0..2000).map(|i| (Vec3::new(100.0, -7.0, 3.0) + ball(i).0, ball(i).1)).collect();
         crowd
     }
 
@@ -245,7 +274,7 @@ mod tests {
     fn everything_fits_and_the_picture_is_full() {
         let askew = Camera { towards: Vec3::new(0.3, -0.4, -1.0), xfov: 0.4, ..Camera::default() };
         for (camera, aspect) in [(Camera::default(), 4.0 / 3.0), (askew, 1.0), (askew, 0.3)] {
-            let balls = crowd().balls;
+            let balls = crowd().loose.balls;
             let Viewpoint { camera, .. } = crowd().view(camera, &[], aspect, false);
             let seen = || balls.iter().map(|&(place, _)| seen(&camera, place, aspect));
             assert!(seen().flatten().all(|at| at.abs() < 1.0), "{camera:?}");
@@ -256,7 +285,7 @@ mod tests {
 
     #[test]
     fn everything_fits_from_all_sides() {
-        let balls = crowd().balls;
+        let balls = crowd().loose.balls;
         let from = crowd().view(Camera::default(), &[], 1.5, true);
         for step in 0..50 {
             let camera = from.turned(0.02 * f64::from(step));
@@ -269,7 +298,7 @@ mod tests {
     fn strays_and_horizons_do_not_count() {
         let calm = crowd().view(Camera::default(), &[], 1.5, false).camera;
         let mut stray = crowd();
-        stray.balls.push((Vec3::new(1e6, 1e6, 0.0), 0.1));
+        stray.loose.balls.push((Vec3::new(1e6, 1e6, 0.0), 0.1));
         let stray = stray.view(Camera::default(), &[], 1.5, false).camera;
         assert!(stray.eye.distance(calm.eye) < 0.3 * calm.eye.z, "{stray:?} {calm:?}");
         let horizon = Aabb { min: Vec3::splat(-1e5), max: Vec3::splat(1e5) };
@@ -280,10 +309,29 @@ mod tests {
     }
 
     #[test]
+    fn what_the_scene_begins_with_is_no_stray_among_sparks() {
+        let (left, right) = (Vec3::new(-300.0, 0.0, 0.0), Vec3::new(600.0, 0.0, 0.0));
+        let mut begun = crowd();
+        begun.placed.balls.push((left, 1.0));
+        begun.bodies.balls.push((right, 1.0));
+        let camera = begun.view(Camera::default(), &[], 1.5, false).camera;
+        for place in [left, right] {
+            assert!((0.85..1.0).contains(&seen(&camera, place, 1.5)[0].abs()), "{camera:?}");
+        }
+        // Of many bodies one may be, but not what is fixed.
+        let mut many = Crowd::new();
+        many.bodies.balls = crowd().loose.balls;
+        let calm = crowd().view(Camera::default(), &[], 1.5, false).camera;
+        many.bodies.balls.push((1e6 * Vec3::X, 0.1));
+        let camera = many.view(Camera::default(), &[], 1.5, false).camera;
+        assert!(camera.eye.distance(calm.eye) < 0.3 * calm.eye.z, "{camera:?}");
+    }
+
+    #[test]
     fn nothing_at_all_can_be_looked_at() {
         for balls in [vec![], vec![(Vec3::ONE, 0.0)]] {
             let mut crowd = Crowd::new();
-            crowd.balls = balls;
+            crowd.loose.balls = balls;
             let Viewpoint { camera, .. } = crowd.view(Camera::default(), &[], 1.0, true);
             assert!(camera.eye.is_finite() && camera.near > 0.0 && camera.near < camera.far, "{camera:?}");
         }
