@@ -41,3 +41,27 @@ fn elasticities_that_contacts_by_force_do_not_ask_are_remarked_on() {
     remarked(&none, "--response force", Some("--response force: a damping of 0.1 gives back 0.74"));
     remarked(&none, "--response impulse", None);
 }
+
+/// Colours of particles are bytes, all others shares: where one is said as the other, the remark says so.
+#[test]
+fn colors_by_the_other_scale_are_remarked_on() {
+    let particle = |color: &str| format!(r#"{{"particles": [{{}}, {{"position": [1, 0, 0], "color": {color}}}]}}"#);
+    remarked(
+        &particle("[1, 0, 0, 1]"),
+        "",
+        Some("a.json:particles[1].color: red, green, blue and opacity of particles are bytes"),
+    );
+    for color in ["[255, 0, 0, 255]", "[0, 0, 0, 0]", "[1, 1, 1, 255]", "[90, 0, 0, 1]"] {
+        remarked(&particle(color), "", None);
+    }
+    let shape = r#""shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "rate": 1, "lifetime": 1, "material": 0"#;
+    let emitter = |color: &str| format!(r#"{{"emitters": [{{{shape}, "color": {color}}}], "materials": [{{}}]}}"#);
+    remarked(&emitter("[0, 1, 1, 1]"), "", Some("a.json:emitters[0].color: red, green, blue and opacity"));
+    remarked(&emitter("[0, 10, 10, 255]"), "", None);
+    let life = |keys: &str| format!(r#"{{"emitters": [{{{shape}}}], "materials": [{{"life": {{"color": {keys}}}}}]}}"#);
+    let said = "a.json:materials[0].life.color: 255 is a factor of";
+    remarked(&life("[[0, 0, 255, 0], [1, 0, 0, 0]]"), "", Some(said));
+    remarked(&life(r#"{"keys": [[0, 0, 0, 255]]}"#), "", Some(said));
+    remarked(&life(r#"{"between": [{"keys": [[0, 1, 1, 1]]}, {"keys": [[0, 255, 1, 1]]}]}"#), "", Some(said));
+    remarked(&life("[[0, 1, 0.5, 0], [1, 3, 3, 3]]"), "", None);
+}

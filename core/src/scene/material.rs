@@ -226,6 +226,18 @@ impl<const N: usize> CurveBuf<[f32; N]> {
     }
 }
 
+impl<K> VaryingBuf<K> {
+    /// The keys of its curve, or of both.
+    pub(super) fn curves(&self) -> impl Iterator<Item = &[K]> {
+        let (from, to) = match self {
+            Self::Keys(keys) => (keys, None),
+            Self::Curve(curve) => (&curve.keys, None),
+            Self::Between(Sides { between: [from, to] }) => (&from.keys, Some(&to.keys)),
+        };
+        core::iter::once(from).chain(to).map(Vec::as_slice)
+    }
+}
+
 impl<const N: usize> VaryingBuf<[f32; N]> {
     fn lend(&self) -> Varying<'_, N> {
         match self {

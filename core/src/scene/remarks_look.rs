@@ -1,12 +1,17 @@
 //! Remarks on colours that are hardly meant.
 
-use super::{Light, Material, SceneFile};
+use super::{Light, Material, SceneFile, VaryingBuf};
+use crate::math::max;
+use crate::particles::Color;
 use alloc::format;
 use alloc::string::String;
 use core::fmt::Arguments;
 
 /// What no surface returns of the light that falls on it, nor any sky sends: more is a byte that has not been divided by 255, say.
 const BRIGHT: f32 = 2.0;
+
+/// The largest factor of a colour that may be meant.
+const FACTOR: f32 = 32.0;
 
 /// The brightest that lamps are drawn.
 const DAZZLING: f32 = 100.0;
@@ -39,7 +44,38 @@ impl SceneFile {
         }
         let fog = self.fog.and_then(|fog| fog.color);
         add(format_args!("fog.color"), fog.and_then(bright));
+        self.add_scales(add);
     }
+
+    /// Remarks on colours by the other of the two scales, bytes for particles, and from 0 to 1 for all else: those of particles are then too
+    /// clear to be seen, and factors over a life so large that all is white.
+    fn add_scales(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        for (i, particle) in self.particles.iter().enumerate() {
+            add(format_args!("particles[{i}].color"), particle.color.and_then(unscaled));
+        }
+        for (i, emitter) in self.emitters.iter().enumerate() {
+            add(format_args!("emitters[{i}].color"), emitter.color.and_then(unscaled));
+        }
+        for (i, material) in self.materials.iter().enumerate() {
+            let keys = material.life.color.iter().flat_map(VaryingBuf::curves).flatten();
+            let most = keys.flat_map(|[_, rgb @ ..]| rgb).fold(0.0, |most, &factor| max(most, factor));
+            let bytes = || {
+                format!(
+                    "{most} is a factor of what the particle's colour has, whose bytes end at 255: take shares, from 0 to 1"
+                )
+            };
+            add(format_args!("materials[{i}].life.color"), (most > FACTOR).then(bytes));
+        }
+    }
+}
+
+/// A remark on a particle's colour that seems to be meant from 0 to 1.
+fn unscaled(color: Color) -> Option<String> {
+    let [.., opacity] = color;
+    let bytes = || {
+        "red, green, blue and opacity of particles are bytes from 0 to 255, and an opacity of 1 of 255 is not seen; multiply by 255".into()
+    };
+    (opacity == 1 && color.iter().all(|&part| part <= 1)).then(bytes)
 }
 
 impl Light {
