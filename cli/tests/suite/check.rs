@@ -487,7 +487,7 @@ fn wind_brakes_as_drag_does_and_what_is_not_looked_at_is_named() {
         assert_eq!(check["not_judged"], Value::Array(Vec::new()), "{forces}");
     }
     let near = r#"{"lennard_jones": {"epsilon": 1, "sigma": 0.3, "cutoff": 0.75}}"#;
-    let undragged = |forces: &str| scene(forces).replace(r#""drag": 3"#, r#""drag": 0"#);
+    let undragged = |forces: &str| scene(forces).replace(r#""drag": 3"#, r#""drag": 0, "charge": 1e-9"#);
     folder.write("a.json", undragged(&format!("{near}, {near}, {{\"coulomb\": {{}}}}")));
     let text = folder.run("check a.json").fine().stdout;
     assert!(text.contains("not looked at: Lennard-Jones, charges, ") && text.contains("1 particle (1 free)"), "{text}");

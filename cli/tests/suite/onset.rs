@@ -58,7 +58,10 @@ fn viscosity_is_judged_as_near_as_particles_start() {
 
 #[test]
 fn steps_are_not_called_stable_for_forces_that_nobody_looks_at() {
-    let folder = Folder::with("a.json", r#"{"particles": [{}, {"position": [1, 0, 0]}], "forces": [{"coulomb": {}}]}"#);
+    let folder = Folder::with(
+        "a.json",
+        r#"{"particles": [{"charge": 1e-9}, {"position": [1, 0, 0]}], "forces": [{"coulomb": {}}]}"#,
+    );
     let text = folder.run("check a.json").fine().stdout.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(text.contains("not known") && text.contains("others do"), "{text}");
     assert!(!text.contains("any stable") && !text.contains("or any other"), "{text}");
@@ -77,7 +80,8 @@ fn drag_below_zero_is_warned_of() {
     assert!(text.contains("drag below zero adds energy, and no step is stable") && !text.contains("a kd"), "{text}");
     // Without the force it does nothing.
     folder.write("b.json", r#"{"particles": [{"drag": -0.5}]}"#);
-    folder.run("run b.json --steps 1").fine();
+    let idle = "b.json:particles[0].drag: -0.5 brakes nobody, for no force looks at it; add drag or wind to the forces, or take 0";
+    assert_eq!(folder.run("run b.json --steps 1").warnings(), [idle]);
 }
 
 #[test]

@@ -73,6 +73,11 @@ impl Varied {
             particle
         };
         scene["particles"] = (0..self.particles).map(particle).collect();
+        if self.charged && self.particles > 0 {
+            // Charges that nobody looks at are remarked on.
+            let law = json!({"strength": -1e-3, "exponent": 1, "reach": 0.1, "weight": "charge"});
+            scene["forces"].as_array_mut().expect("a list").push(json!({"power_law": law}));
+        }
         if self.own {
             scene["custom"] =
                 json!([{"name": "heat", "start": [80.1], "newborn": 20}, {"name": "Heat"}, {"name": "X"}]);

@@ -65,3 +65,110 @@ fn colors_by_the_other_scale_are_remarked_on() {
     remarked(&life(r#"{"between": [{"keys": [[0, 1, 1, 1]]}, {"keys": [[0, 255, 1, 1]]}]}"#), "", Some(said));
     remarked(&life("[[0, 1, 0.5, 0], [1, 3, 3, 3]]"), "", None);
 }
+
+/// Forces that look for what nobody has, and what no force looks for.
+#[test]
+fn forces_and_what_they_look_for_belong_together() {
+    let scene = |particle: &str, forces: &str| {
+        format!(r#"{{"particles": [{{}}, {{"position": [1, 0, 0] {particle}}}], "forces": [{forces}]}}"#)
+    };
+    let wind = |rest: &str| format!(r#"{{"wind": {{"field": [{{"uniform": {{"velocity": [1, 0, 0]}}}}] {rest}}}}}"#);
+    let (drag, charge) = (r#", "drag": 1"#, r#", "charge": 1e-6"#);
+    let power = r#"{"power_law": {"strength": 1, "exponent": 2, "reach": 1, "weight": "charge"}}"#;
+    let lj = |cutoff: f32| format!(r#"{{"lennard_jones": {{"epsilon": 1e-9, "sigma": 0.5, "cutoff": {cutoff}}}}}"#);
+    for (particle, forces, said) in [
+        ("", &*wind(""), Some("a.json:forces[0].wind.coefficient: without one it brakes by each particle's own drag")),
+        ("", &wind(r#", "coefficient": 1"#), None),
+        (drag, &wind(""), None),
+        (drag, "", Some("a.json:particles[1].drag: 1 brakes nobody")),
+        (drag, r#"{"drag": {}}"#, None),
+        // As every .scn has it.
+        ("", r#"{"drag": {}}"#, None),
+        (drag, r#"{"drag": {}}, {"drag": {}}"#, Some("a.json:forces[1].drag: it stands among the forces twice")),
+        (
+            charge,
+            r#"{"gravity": {"acceleration": [0, -1, 0]}}"#,
+            Some("a.json:particles[1].charge: 0.000001 C does nothing"),
+        ),
+        (charge, r#"{"coulomb": {}}"#, None),
+        (charge, power, None),
+        ("", r#"{"coulomb": {}}"#, Some("a.json:forces[0].coulomb: nobody has a charge")),
+        ("", power, Some("a.json:forces[0].power_law: nobody has a charge")),
+        ("", &lj(0.4), Some("a.json:forces[0].lennard_jones.cutoff: 0.4 m is within sigma, 0.5 m")),
+        // As wide as the pull begins: what repels alone is meant.
+        ("", &lj(0.5613), None),
+    ] {
+        remarked(&scene(particle, forces), "", said);
+    }
+    let emitter = r#""emitters": [{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, "rate": 1, "charge": {"mean": 0, "half_width": 1}}]"#;
+    remarked(&format!(r#"{{{emitter}, "forces": [{{"coulomb": {{}}}}]}}"#), "", None);
+    remarked(&format!("{{{emitter}}}"), "", Some("a.json:emitters[0].charge: 1 C does nothing"));
+    let hung = r#""ropes": [{"curve": [[0, 0, 0], [1, 0, 0]], "segments": 4, "weight": 1, "drag": 1}]"#;
+    remarked(&format!(r#"{{{hung}, "forces": [{}]}}"#, wind("")), "", None);
+}
+
+/// Emitters that bring nobody, or not as they seem to say.
+#[test]
+fn emitters_that_do_nothing_are_remarked_on() {
+    let scene = |shape: &str, rest: &str| {
+        format!(r#"{{"run": {{"duration": 2}}, "emitters": [{{"shape": {{{shape}}}, "speed": 1, {rest}}}]}}"#)
+    };
+    let sphere = r#""sphere": {"center": [0, 0, 0], "radius": 0}"#;
+    let cone = r#""cone": {"center": [0, 0, 0], "radius": 0, "height": 0}"#;
+    for (shape, rest, said) in [
+        (
+            sphere,
+            r#""rate": 1, "where_sparse": {"radius": 1, "fewest": 0}"#,
+            Some("a.json:emitters[0].where_sparse.fewest: fewer than 0"),
+        ),
+        (sphere, r#""rate": 1, "where_sparse": {"radius": 1, "fewest": 1}"#, None),
+        (
+            sphere,
+            r#""rate": 1, "start": 2"#,
+            Some("a.json:emitters[0].start: 2 s is not before the run's end, at run.duration of 2 s"),
+        ),
+        (sphere, r#""rate": 1, "start": 1.9"#, None),
+        (sphere, r#""burst": {"count": 5, "at": 3}"#, Some("a.json:emitters[0].burst.at: 3 s is not before")),
+        (sphere, r#""burst": {"count": 5}"#, None),
+        (cone, r#""rate": 1"#, Some("a.json:emitters[0].shape.cone: without a radius and a height it is a point")),
+        (cone, r#""rate": 1, "direction": [0, 1, 0]"#, None),
+        (
+            sphere,
+            r#""rate": 1, "lifetime": {"mean": 2, "half_width": -0.5}"#,
+            Some("a.json:emitters[0].lifetime.half_width: -0.5 counts as 0.5"),
+        ),
+        (
+            sphere,
+            r#""rate": 1, "motion": {"swing": [1, 0, 0]}"#,
+            Some("a.json:emitters[0].motion.frequency: 0 swings nothing"),
+        ),
+        (sphere, r#""rate": 1, "motion": {"swing": [1, 0, 0], "frequency": 1}"#, None),
+    ] {
+        remarked(&scene(shape, rest), "", said);
+    }
+}
+
+/// Curves over lives that have no end, and numbers below zero that count otherwise.
+#[test]
+fn lives_without_an_end_and_numbers_below_zero_are_remarked_on() {
+    let scene = |lifetime: f32, curve: &str| {
+        format!(
+            r#"{{"particles": [{{"material": 1, "lifetime": {lifetime}}}], "materials": [{{"life": {{"size": [[0, 1], [1, 2]]}}}},
+            {{"life": {{"buoyancy": {curve}}}}}]}}"#
+        )
+    };
+    let grows = "[[0, 1], [1, 2]]";
+    remarked(&scene(0.0, grows), "", Some("a.json:materials[1].life.buoyancy: it goes over a life"));
+    remarked(&scene(1.0, grows), "", None);
+    remarked(&scene(0.0, r#"{"keys": [[0, 1], [1, 2]], "over": "seconds"}"#), "", None);
+    remarked(&scene(0.0, "[[0, 1]]"), "", None);
+    remarked(r#"{"materials": [{"shininess": -5}]}"#, "", Some("a.json:materials[0].shininess: -5 counts as 1"));
+    remarked(r#"{"materials": [{"shininess": 0}]}"#, "", None);
+    let spring = |length: f32| {
+        format!(
+            r#"{{"particles": [{{}}, {{"position": [1, 0, 0]}}], "springs": [{{"ends": [0, 1], "rest_length": {length}, "ks": 1}}]}}"#
+        )
+    };
+    remarked(&spring(-1.0), "", Some("a.json:springs[0].rest_length: -1 m is below 0"));
+    remarked(&spring(0.0), "", None);
+}

@@ -67,7 +67,7 @@ fn a_style_that_is_none_is_told() {
 #[test]
 fn what_works_unseen_is_shown_where_it_is_asked_for() {
     let more = r#""sinks": [{"shape": {"sphere": {"center": [-2, -1.6, 0], "radius": 0.2}}, "intensity": 0, "ca": 1, "la": 0, "qa": 0}],
-        "emitters": [{"shape": {"sphere": {"center": [-2.4, 0, 0], "radius": 0.2}}, "burst": {"count": 1, "at": 99}, "color": [0, 255, 0, 255]}],
+        "emitters": [{"shape": {"sphere": {"center": [-2.4, 0, 0], "radius": 0.2}}, "rate": 1e-3, "color": [0, 255, 0, 255]}],
         "particles""#;
     let folder = Folder::with("a.json", SCENE.replace(r#""particles""#, more));
     let bare = drawn(&folder, "--style points");

@@ -271,6 +271,28 @@ impl LifeBuf {
         }
     }
 
+    /// The names of the curves that change from key to key over shares of a life.
+    pub(super) fn over_lives(&self) -> impl Iterator<Item = &'static str> {
+        fn changes<const N: usize>(curve: Option<&VaryingBuf<[f32; N]>>) -> bool {
+            let varies = |Curve { keys, over, .. }: Curve<'_, N>| {
+                over == Over::Life && keys.windows(2).any(|pair| pair[0][1..] != pair[1][1..])
+            };
+            curve.map(VaryingBuf::lend).is_some_and(|Varying { from, to }| varies(from) || to.is_some_and(varies))
+        }
+        let Self { size, color, opacity, glow, rotation, drag, mass, buoyancy } = self;
+        let plain = [
+            ("size", size),
+            ("opacity", opacity),
+            ("glow", glow),
+            ("rotation", rotation),
+            ("drag", drag),
+            ("mass", mass),
+            ("buoyancy", buoyancy),
+        ];
+        let plain = plain.into_iter().map(|(name, curve)| (name, changes(curve.as_ref())));
+        plain.chain([("color", changes(color.as_ref()))]).filter(|(_, changes)| *changes).map(|(name, _)| name)
+    }
+
     /// Checks that its curves can be used; `at` is where they stand.
     pub(super) fn check(&self, at: &str) -> Result<(), SceneError> {
         const ANY: f32 = f32::MAX;

@@ -55,7 +55,11 @@ mod references;
 #[cfg(feature = "alloc")]
 mod remarks;
 #[cfg(feature = "alloc")]
+mod remarks_births;
+#[cfg(feature = "alloc")]
 mod remarks_contact;
+#[cfg(feature = "alloc")]
+mod remarks_forces;
 #[cfg(feature = "alloc")]
 mod remarks_idle;
 #[cfg(feature = "alloc")]

@@ -1,7 +1,7 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
 use super::{Boxes, Cloth, Cord, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
-use crate::emit::{Spread, Varied};
+use crate::emit::Varied;
 use crate::force::Friction;
 use crate::shape::{Aabb, Shape, Surface};
 use alloc::format;
@@ -9,9 +9,6 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::Arguments;
 use glam::Vec3;
-
-/// All directions \[rad\]: π, also as files round it.
-const HALF_TURN: f32 = core::f32::consts::PI * 1.0002;
 
 /// As many as are told: a large file may have one in every line.
 pub(super) const MOST: usize = 1000;
@@ -68,29 +65,8 @@ impl SceneFile {
         self.add_idle(&mut add);
         self.add_colors(&mut add);
         self.add_unread(&mut add);
-        if let Some(i) = self.doubled_drag() {
-            let twice = "wind brakes by the same coefficients, as seen from the moving air: both together brake twice; leave this one out, or give the wind a coefficient";
-            add(format_args!("forces[{i}].drag"), Some(twice.into()));
-        }
+        self.add_forces(&mut add);
         remarks
-    }
-
-    /// Remarks on births.
-    fn add_emitters(&self, add: &mut dyn FnMut(Arguments<'_>, Option<String>)) {
-        for (i, emitter) in self.emitters.iter().enumerate() {
-            add(
-                format_args!("emitters[{i}].elasticity"),
-                odd_elasticity(emitter.elasticity).filter(|_| !emitter.fixed),
-            );
-            add(format_args!("emitters[{i}].spread"), odd_spread(emitter.spread));
-            add(format_args!("emitters[{i}].lifetime"), odd_lifetime(emitter.lifetime));
-            let never = emitter.rate == 0.0 && emitter.burst.is_none_or(|burst| burst.count == 0);
-            let barren = || "neither this nor a burst says how many, so nothing is born".into();
-            add(format_args!("emitters[{i}].rate"), never.then(barren));
-            let ended = emitter.stop.filter(|&stop| stop <= emitter.start);
-            let nothing = |stop| format!("{stop} s is not after start, {} s, so nothing is born", emitter.start);
-            add(format_args!("emitters[{i}].stop"), ended.map(nothing));
-        }
     }
 
     /// Remarks on springs.
@@ -99,6 +75,9 @@ impl SceneFile {
             add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
             add(format_args!("springs[{i}].ks"), odd_strength(spring.ks));
             add(format_args!("springs[{i}].kd"), odd_strength(spring.kd));
+            let length = spring.rest_length;
+            let shorter = || format!("{length} m is below 0: it pulls, by so much more, even where its ends meet");
+            add(format_args!("springs[{i}].rest_length"), (length < 0.0).then(shorter));
         }
     }
 
@@ -192,20 +171,6 @@ pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<Stri
         return Some(format!("{most} is above 1, so hits add energy"));
     }
     (least < -ROUNDING).then(|| format!("{least} is below 0, which counts as 0: hits leave nothing of a speed"))
-}
-
-/// A remark on an odd angle within which births leave. The lecture's recipe takes the sine of any.
-fn odd_spread(spread: Spread) -> Option<String> {
-    let Spread::Uniform(cutoff) = spread else { return None };
-    (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
-}
-
-/// A remark on a lifetime that some are born without.
-fn odd_lifetime(Varied { mean, half_width }: Varied) -> Option<String> {
-    let least = mean - half_width.abs();
-    let some =
-        || format!("{least} s is the least of it: who is born with no more than 0 s lives on, as without a lifetime");
-    (half_width != 0.0 && least < 0.0 && least.is_finite()).then(some)
 }
 
 /// A remark on odd ends of a spring.

@@ -2,13 +2,14 @@
 
 use super::{Growth, SceneFile};
 use crate::constrain::{ConstraintKind, Strands};
-use crate::force::ForceKind;
+use crate::motion::MotionBuf;
 use crate::reap::ReaperKind;
 use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::Arguments;
+use glam::Vec3;
 
 impl SceneFile {
     /// Remarks on parts that do nothing.
@@ -58,30 +59,47 @@ impl SceneFile {
             let point = || "a plane is infinite, so all are led to its one point".into();
             add(format_args!("goals[{i}].shape"), infinite.then(point));
         }
+        self.add_swings(add);
+        self.add_lives(add);
     }
 
-    /// Remarks on the first drag of a list where the scene has forces, of which none looks at it.
-    pub(super) fn add_unread(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
-        let reads = |force: &ForceKind| matches!(force, ForceKind::Drag(_) | ForceKind::Wind(_));
-        if self.forces.is_empty() || self.forces.iter().any(reads) {
-            return;
-        }
-        let mut look = |list: &str, drags: &mut dyn Iterator<Item = f32>| {
-            let Some((i, drag)) = drags.enumerate().find(|(_, drag)| *drag != 0.0) else { return };
-            let nothing =
-                || format!("{drag} brakes nobody, for no force looks at it; add drag or wind to the forces, or take 0");
-            add(format_args!("{list}[{i}].drag"), Some(nothing()));
+    /// Remarks on motions that say how far to swing, and not how often.
+    fn add_swings(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        let still = |motion: &Option<MotionBuf>| {
+            let idle = |motion: &MotionBuf| motion.swing != Vec3::ZERO && [motion.frequency, motion.phase] == [0.0; 2];
+            let nothing = || "0 swings nothing; say how often a second".into();
+            motion.as_ref().is_some_and(idle).then(nothing)
         };
-        look("particles", &mut self.particles.iter().map(|particle| particle.drag));
-        look("emitters", &mut self.emitters.iter().map(|emitter| emitter.drag.mean));
-        look("boxes", &mut self.boxes.iter().map(|boxes| boxes.drag));
+        let mut look = |list: &str, motions: &mut dyn Iterator<Item = &Option<MotionBuf>>| {
+            for (i, motion) in motions.enumerate() {
+                add(format_args!("{list}[{i}].motion.frequency"), still(motion));
+            }
+        };
+        look("emitters", &mut self.emitters.iter().map(|emitter| &emitter.motion));
+        look("scenery", &mut self.scenery.iter().map(|item| &item.motion));
+        look("strands", &mut self.strands.iter().map(|tuft| &tuft.motion));
+        look("ropes", &mut self.ropes.iter().map(|cord| &cord.motion));
+        look("soft_bodies", &mut self.soft_bodies.iter().map(|body| &body.motion));
     }
 
-    /// The drag in still air that acts beside a wind on the same coefficients, by its place in the list of forces.
-    pub(super) fn doubled_drag(&self) -> Option<usize> {
-        let blows = |force: &ForceKind| matches!(force, ForceKind::Wind(wind) if wind.coefficient.is_none());
-        let drag = self.forces.iter().position(|force| matches!(force, ForceKind::Drag(_)))?;
-        self.forces.iter().any(blows).then_some(drag)
+    /// Remarks on curves over the lives of particles that all live for ever, and so stay at the beginning of these.
+    fn add_lives(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        for (i, material) in self.materials.iter().enumerate() {
+            let of = |number: &Option<u16>| number.is_some_and(|number| usize::from(number) == i);
+            let own = self.particles.iter().filter(|particle| of(&particle.material)).map(|particle| particle.lifetime);
+            let born = self.emitters.iter().filter(|emitter| of(&emitter.material));
+            let longest = own.chain(born.map(|emitter| emitter.lifetime.mean + emitter.lifetime.half_width.abs()));
+            // Who has the material of a group may live by other rules, and whose material nobody has is none to remark on.
+            let longest = longest.fold(f32::NEG_INFINITY, f32::max);
+            if longest > 0.0 || longest == f32::NEG_INFINITY {
+                continue;
+            }
+            let frozen = material.life.over_lives();
+            let stays = "it goes over a life, and whoever is of this material lives for ever, so it stays as it begins; give particles a lifetime, or say \"over\": \"seconds\"";
+            for name in frozen {
+                add(format_args!("materials[{i}].life.{name}"), Some(stays.into()));
+            }
+        }
     }
 
     /// Tells whether strands turn an end, root or tip, that is neither held nor clamped in any of them: one of the two particles there, of the file's

@@ -20,7 +20,7 @@ impl SceneFile {
     /// Remarks on colours beyond what they are drawn with, and on more glow than all.
     pub(super) fn add_colors(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
         for (i, material) in self.materials.iter().enumerate() {
-            let Material { ambient, diffuse, specular, transmission, emission, glow, .. } = material;
+            let Material { ambient, diffuse, specular, transmission, emission, glow, shininess, .. } = material;
             let colors = [ambient, diffuse, specular, transmission, emission];
             let names = ["ambient", "diffuse", "specular", "transmission", "emission"];
             for (name, color) in names.into_iter().zip(colors) {
@@ -28,6 +28,8 @@ impl SceneFile {
             }
             let more = || format!("{glow} counts as 1, a glow and nothing else");
             add(format_args!("materials[{i}].glow"), (*glow > 1.0).then(more));
+            let dull = || format!("{shininess} counts as 1, the widest highlight");
+            add(format_args!("materials[{i}].shininess"), (*shininess < 0.0).then(dull));
         }
         for (i, light) in self.lights.iter().enumerate() {
             let most = largest(light.color());
