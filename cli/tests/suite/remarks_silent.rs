@@ -19,7 +19,7 @@ fn remarked(text: &str, args: &str, said: Option<&str>) {
 fn elasticities_that_contacts_by_force_do_not_ask_are_remarked_on() {
     let scene = |elasticity: &str, damping: &str, scenery: &str| {
         format!(
-            r#"{{"run": {{"dt": 1e-3}}, "particles": [{{"radius": 0.1, "elasticity": {elasticity}, "material": 0}}, {{"position": [1, 0, 0], "radius": 0.1}}],
+            r#"{{"run": {{"dt": 1e-4}}, "particles": [{{"radius": 0.1, "elasticity": {elasticity}, "material": 0}}, {{"position": [1, 0, 0], "radius": 0.1}}],
             "contacts": {{"force": {{"stiffness": 1e5 {damping}}}}}, "materials": [{{}}], "scenery": [{scenery}]}}"#
         )
     };
@@ -171,4 +171,67 @@ fn lives_without_an_end_and_numbers_below_zero_are_remarked_on() {
     };
     remarked(&spring(-1.0), "", Some("a.json:springs[0].rest_length: -1 m is below 0"));
     remarked(&spring(0.0), "", None);
+}
+
+/// Balls that begin sunk into scenery that stands still stay so, and are remarked on, and births without a speed; nothing that is lifted out, flies out or only touches is.
+#[test]
+fn what_begins_inside_of_scenery_is_remarked_on() {
+    let floor = r#"{"shape": {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0]}}}"#;
+    let ball = |height: f32, rest: &str| format!(r#"{{"position": [0, {height}, 0], "radius": 0.1 {rest}}}"#);
+    let scene = |particles: &str, scenery: &str, rest: &str| {
+        format!(r#"{{"particles": [{particles}], "scenery": [{scenery}] {rest}}}"#)
+    };
+    let sunk = "a.json:particles[1].position: it is 0.05 m inside of scenery[1]";
+    let high = ball(9.0, "");
+    let aside = r#"{"shape": {"sphere": {"center": [50, 0, 0], "radius": 1}}}"#;
+    let two = format!("{aside}, {floor}");
+    remarked(&scene(&format!("{high}, {}", ball(0.05, "")), &two, ""), "", Some(sunk));
+    remarked(&scene(&format!("{high}, {0}, {0}", ball(0.05, "")), &two, ""), "", Some("scenery[1], as 1 more are"));
+    for (particle, rest) in [
+        (ball(0.1, ""), ""),
+        (ball(0.0995, ""), ""),
+        (ball(0.05, r#", "fixed": true"#), ""),
+        (ball(0.05, r#", "velocity": [0, 1, 0]"#), ""),
+        (ball(0.05, ""), r#", "contacts": {"position": {}}"#),
+    ] {
+        remarked(&scene(&particle, floor, rest), "", None);
+    }
+    // Within a hollow ball, and where a group has taken the floor.
+    remarked(&scene(&ball(0.0, ""), r#"{"shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}}"#, ""), "", None);
+    let lower = r#", "groups": [{"matrix": [[1, 0, 0, 0], [0, 1, 0, -1], [0, 0, 1, 0], [0, 0, 0, 1]]}]"#;
+    let moved = floor.replace("}}}", r#"}}, "group": 0}"#);
+    remarked(&scene(&ball(0.0, ""), &moved, lower), "", None);
+    remarked(&scene(&ball(-1.05, ""), &moved, lower), "", Some("0.05"));
+    let born = |height: f32, rest: &str| {
+        format!(
+            r#"{{"scenery": [{floor}], "emitters": [{{"shape": {{"circle": {{"center": [0, {height}, 0], "normal": [0, 1, 0], "radius": 1}}}},
+            "rate": 1, "radius": 0.1 {rest}}}]}}"#
+        )
+    };
+    remarked(&born(0.0, ""), "", Some("a.json:emitters[0].shape: births are 0.1 m inside of scenery[0]"));
+    remarked(&born(0.0, r#", "speed": 1"#), "", None);
+    remarked(&born(0.1, ""), "", None);
+}
+
+/// Rigid links that begin far from their lengths, which the first step puts there.
+#[test]
+fn links_that_begin_far_from_their_lengths_are_remarked_on() {
+    let scene = |link: &str| {
+        format!(
+            r#"{{"particles": [{{}}, {{"position": [1, 0, 0]}}, {{"position": [2, 0, 0]}}], "constraints": [{link}]}}"#
+        )
+    };
+    let rod = |rest: &str| scene(&format!(r#"{{"distance": {{"ends": [0, 1], {rest}}}}}"#));
+    let said = "a.json:constraints[0].distance.length: 5 m is far from the 1 m that particles 0 and 1 begin apart";
+    remarked(&rod(r#""length": 5"#), "", Some(said));
+    remarked(&rod(r#""length": 5, "tether": true"#), "", None);
+    remarked(&rod(r#""length": 0.5, "tether": true"#), "", Some("0.5 m is far from the 1 m"));
+    remarked(&rod(r#""length": 1.01"#), "", None);
+    remarked(&rod(r#""length": 5, "compliance": 0.1"#), "", None);
+    let rope = r#"{"rope": {"particles": [0, 1, 2], "lengths": [1, 0.2]}}"#;
+    remarked(
+        &scene(rope),
+        "",
+        Some("a.json:constraints[0].rope.lengths: 0.2 m is far from the 1 m that particles 1 and 2"),
+    );
 }

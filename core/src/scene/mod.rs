@@ -66,6 +66,8 @@ mod remarks_idle;
 mod remarks_load;
 #[cfg(feature = "alloc")]
 mod remarks_look;
+#[cfg(feature = "alloc")]
+mod remarks_place;
 mod response;
 #[cfg(feature = "alloc")]
 mod rigging;

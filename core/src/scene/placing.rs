@@ -142,7 +142,7 @@ fn gravity(file: &SceneFile) -> Vec3 {
 }
 
 /// The product of the transforms of all groups around.
-fn placement(file: &SceneFile, group: Option<u32>) -> Affine {
+pub(super) fn placement(file: &SceneFile, group: Option<u32>) -> Affine {
     file.chain(group).iter().fold(Affine::IDENTITY, |outer, &index| {
         let inner = file.groups.get(index as usize).and_then(|group| group.affine().ok());
         outer.after(&inner.unwrap_or(Affine::IDENTITY))

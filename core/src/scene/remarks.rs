@@ -66,6 +66,8 @@ impl SceneFile {
         self.add_colors(&mut add);
         self.add_unread(&mut add);
         self.add_forces(&mut add);
+        self.add_sunk(&mut add);
+        self.add_far(&mut add);
         remarks
     }
 
