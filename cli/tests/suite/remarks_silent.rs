@@ -235,3 +235,46 @@ fn links_that_begin_far_from_their_lengths_are_remarked_on() {
         Some("a.json:constraints[0].rope.lengths: 0.2 m is far from the 1 m that particles 1 and 2"),
     );
 }
+
+/// A `.scn` is remarked on as its conversion to JSON is, at line and column of its commands, through included files; only forces, which nobody has written, are no matter.
+#[test]
+fn scn_is_remarked_on_as_json_is() {
+    let folder = Folder::new();
+    folder.write("in.scn", "\n particle_sink 1 0 0 0  sphere 0 0 0 1");
+    folder.write(
+        "a.scn",
+        "particle_gravity 0 -9 0 particle_gravity 0 -1 0\ninclude in.scn\ntri -1  0 0 0  1 1 1  2 2 2\nbackground 255 255 255\n\
+        material 255 0 0 0 0 0 0 0 0 0 0 0 0 0 0 -1 1 0\n\n particle_source 1 0 0 2 1 -1  0 1 45 sphere 0 0 0 1\n\
+        particle 0 0 0 0 0 0 1 0 0 1 0 -1\nparticle_spring 0 0 -1 1 1",
+    );
+    let answer = folder.run("run a.scn --steps 0");
+    let warnings = answer.warnings();
+    for said in [
+        "a.scn:1:25: particle_gravity: it takes the place of the one before",
+        "in.scn:2:2: particle_sink: intensity: it divides by ca, la and qa",
+        "a.scn:3:1: tri: its corners lie on a line",
+        "a.scn:4:1: background: 255 is far beyond white",
+        "a.scn:5:1: material: ambient: 255 is far beyond white",
+        "a.scn:5:1: material: shininess: -1 counts as 1",
+        "a.scn:7:2: particle_source: elasticity: 2 is above 1",
+        "a.scn:7:2: particle_source: rate: neither this nor a burst",
+        "a.scn:7:2: particle_source: angle_cutoff: 45 rad is not from 0 to π/2: the lecture's recipe takes its sine, which is less again beyond; of degrees take 0.7854",
+        "a.scn:9:1: particle_spring: ends: the spring joins particle 0 to itself",
+        "a.scn:9:1: particle_spring: rest_length: -1 m is below 0",
+    ] {
+        assert!(warnings.iter().any(|warning| warning.starts_with(said)), "{said}: {warnings:?}");
+    }
+    assert_eq!(folder.run("convert a.scn b.json").code, 0);
+    let of_json = folder.run("run b.json --steps 0").warnings().len();
+    // One gravity is left of two, and an include is told of.
+    assert_eq!(warnings.len(), of_json + 2, "{warnings:?}");
+    folder.write("a.scn", "particle_source 1 0 0 0 1 -1  1 1 1.5708 sphere 0 0 0 1 particle_gravity 0 -9 0");
+    assert_eq!(folder.run("run a.scn --steps 0").warnings(), [""; 0]);
+    let cone = |angle: &str| {
+        format!(
+            r#"{{"emitters": [{{"shape": {{"sphere": {{"center": [0, 0, 0], "radius": 1}}}}, "rate": 1, "spread": {{"lecture": {angle}}}}}]}}"#
+        )
+    };
+    remarked(&cone("90"), "", Some("a.json:emitters[0].spread: 90 rad is not from 0 to π/2"));
+    remarked(&cone("1.5708"), "", None);
+}

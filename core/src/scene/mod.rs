@@ -47,6 +47,8 @@ mod names;
 #[cfg(feature = "alloc")]
 mod numbers;
 #[cfg(feature = "alloc")]
+mod origins;
+#[cfg(feature = "alloc")]
 mod placing;
 #[cfg(feature = "alloc")]
 mod read;

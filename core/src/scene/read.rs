@@ -1,8 +1,9 @@
 //! From a `.scn` text, with what it includes, to the declared scene.
 
+use super::origins::{Origin, Origins};
 use super::references::{MAX_GROUPS, MAX_MATERIALS};
-use super::remarks::{MOST, odd_elasticity, odd_ends, odd_strength};
-use super::scn::{Command, Index, Located, Place, Problem, ScnError, Source, commands};
+use super::remarks::MOST;
+use super::scn::{Command, Index, Located, Place, Problem, ScnError, Source, commands, known};
 use super::{Camera, Files, Group, Item, Light, Material, SceneError, SceneFile, beside};
 use crate::emit::{Emitter, Spread, Varied};
 use crate::force::{Drag, ForceKind, Gravity, MutualGravity, Sink, Spring};
@@ -10,6 +11,7 @@ use crate::shape::Shape;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
+use glam::Vec3;
 
 /// How deep files may include each other.
 const MAX_INCLUDE_DEPTH: usize = 64;
@@ -57,7 +59,8 @@ pub fn read_scn_with(path: &str, text: &str, files: &mut dyn Files, unknown: Unk
         files,
         unknown,
         skipped: 0,
-        remarks: Vec::new(),
+        replaced: Vec::new(),
+        origins: Origins::default(),
         root: path,
         scene: SceneFile::new(),
         gravity: None,
@@ -73,7 +76,8 @@ pub fn read_scn_with(path: &str, text: &str, files: &mut dyn Files, unknown: Unk
         let (count, s) = (reader.skipped, if reader.skipped == 1 { "" } else { "s" });
         reader.warnings.insert(0, format!("{path}: {count} unknown command{s} passed over"));
     }
-    let Reader { scene, warnings, remarks, .. } = reader;
+    let Reader { scene, warnings, replaced, origins, .. } = reader;
+    let remarks = replaced.into_iter().chain(origins.place(&scene.remarks())).collect();
     Ok(Reading { scene, warnings, remarks })
 }
 
@@ -86,7 +90,10 @@ struct Reader<'a> {
     scene: SceneFile,
     gravity: Option<Gravity>,
     warnings: Vec<String>,
-    remarks: Vec<String>,
+    /// Remarks on gravities that later ones take the place of.
+    replaced: Vec<String>,
+    /// Where the scene's parts come from.
+    origins: Origins,
     /// The files being read, the outermost first.
     open: Vec<String>,
     includes: usize,
@@ -94,8 +101,9 @@ struct Reader<'a> {
 
 /// The things that the commands of one file refer to.
 struct Scope<'a> {
-    /// The file, as messages name it.
+    /// The file, as messages name it, and its number.
     path: &'a str,
+    file: u32,
     /// Its name relative to the folder of the outermost file; empty for that itself.
     relative: &'a str,
     /// Its materials so far, or those of the including file as long as it has none.
@@ -104,7 +112,7 @@ struct Scope<'a> {
     /// Its particles so far.
     particles: Vec<u32>,
     /// Springs whose ends are still to be looked up.
-    springs: Vec<([Index; 2], Spring)>,
+    springs: Vec<([Index; 2], Spring, Place)>,
     /// The group it was included in.
     base: Option<u32>,
     /// The groups open in it, and where they began.
@@ -153,6 +161,7 @@ impl Reader<'_> {
         self.open.push(path.to_string());
         let mut scope = Scope {
             path,
+            file: self.origins.open(path),
             relative,
             materials: materials.to_vec(),
             borrowed: true,
@@ -185,11 +194,12 @@ impl Reader<'_> {
 
     fn command(&mut self, scope: &mut Scope<'_>, located: Located<'_>) -> Result<(), SceneError> {
         let Located { place, name, command } = located;
+        if let Some(list) = list_of(&command) {
+            self.origins.note(list, Origin { file: scope.file, place, name: known(name) });
+        }
         let scene = &mut self.scene;
         match command {
             Command::Particle { mut particle, material } => {
-                let odd = odd_elasticity(Varied::exactly(particle.elasticity)).filter(|_| !particle.fixed);
-                self.remark(scope, place, name, odd, "elasticity");
                 particle.material = self.inherited(scope, scope.material(name, material)?);
                 scope.particles.push(self.scene.particles.len() as u32);
                 self.scene.particles.push(particle);
@@ -200,12 +210,9 @@ impl Reader<'_> {
                 self.scene.sinks.push(Sink { shape, group, intensity, ca, la, qa, softening });
             }
             Command::Spring { ends, rest_length, ks, kd } => {
-                self.remark(scope, place, name, odd_ends(ends.map(|end| end.value)), "ends");
-                self.remark(scope, place, name, odd_strength(ks), "ks");
-                self.remark(scope, place, name, odd_strength(kd), "kd");
-                scope.springs.push((ends, Spring { kd, ..Spring::new([0; 2], rest_length, ks) }));
+                scope.springs.push((ends, Spring { kd, ..Spring::new([0; 2], rest_length, ks) }, place));
             }
-            Command::Gravity(acceleration) => self.gravity = Some(Gravity { acceleration }),
+            Command::Gravity(acceleration) => self.gravity(scope, place, name, acceleration),
             Command::Scenery(piece) => {
                 let material = scope.material(name, piece.material)?;
                 let shape = self.shape(scope, place, name, &piece.shape)?;
@@ -241,10 +248,17 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// The gravity of a scene, which has one.
+    fn gravity(&mut self, scope: &Scope<'_>, place: Place, name: &str, acceleration: Vec3) {
+        if self.gravity.is_some() && self.replaced.len() < MOST {
+            let only = scope.error(place, name, "it takes the place of the one before; a scene has one");
+            self.replaced.push(only.to_string());
+        }
+        self.gravity = Some(Gravity { acceleration });
+    }
+
     fn source(&mut self, scope: &Scope<'_>, place: Place, name: &str, source: Source<'_>) -> Result<(), SceneError> {
         let Source { newborn, material, rate, velocity, angle_cutoff, shape } = source;
-        let odd = odd_elasticity(Varied::exactly(newborn.elasticity)).filter(|_| !newborn.fixed);
-        self.remark(scope, place, name, odd, "elasticity");
         let shape = self.shape(scope, place, name, &shape)?;
         let material = self.inherited(scope, scope.material(name, material)?);
         self.scene.emitters.push(Emitter {
@@ -305,13 +319,6 @@ impl Reader<'_> {
         format!("there is no {kind} file '{shown}'{}", hint.unwrap_or_default())
     }
 
-    /// Warns of what is odd about an argument.
-    fn remark(&mut self, scope: &Scope<'_>, place: Place, name: &str, odd: Option<String>, argument: &str) {
-        if let Some(odd) = odd.filter(|_| self.remarks.len() < MOST) {
-            self.remarks.push(scope.error(place, name, format!("{argument}: {odd}")).to_string());
-        }
-    }
-
     fn include(&mut self, scope: &Scope<'_>, place: Place, file: &str) -> Result<(), SceneError> {
         let fail = |message: String| Err(scope.error(place, "include", message));
         let relative = scope.named(file);
@@ -359,7 +366,7 @@ impl Reader<'_> {
     }
 
     fn springs(&mut self, scope: &Scope<'_>) -> Result<(), SceneError> {
-        for (ends, spring) in &scope.springs {
+        for (ends, spring, place) in &scope.springs {
             let mut found = [0; 2];
             for (found, index) in found.iter_mut().zip(ends) {
                 let particle = usize::try_from(index.value).ok().and_then(|i| scope.particles.get(i));
@@ -370,10 +377,33 @@ impl Reader<'_> {
                 };
                 *found = particle;
             }
+            self.origins.note("springs", Origin { file: scope.file, place: *place, name: "particle_spring" });
             self.scene.springs.push(Spring { ends: found, ..*spring });
         }
         Ok(())
     }
+}
+
+/// The list of a scene that a command adds to, or what there is but one of that it says. Springs of a file are added when it ends, in their order.
+fn list_of(command: &Command<'_>) -> Option<&'static str> {
+    Some(match command {
+        Command::Particle { .. } => "particles",
+        Command::Source(_) => "emitters",
+        Command::Sink(_) => "sinks",
+        Command::Scenery(_) => "scenery",
+        Command::Material { .. } => "materials",
+        Command::DirectionalLight(_) | Command::PointLight(_) | Command::SpotLight(..) | Command::AreaLight(..) => {
+            "lights"
+        }
+        Command::Ambient(_) => "ambient",
+        Command::Background(_) => "background",
+        Command::Gravity(_)
+        | Command::Begin { .. }
+        | Command::End
+        | Command::Camera(_)
+        | Command::Include(_)
+        | Command::Spring { .. } => return None,
+    })
 }
 
 /// An error in a file.

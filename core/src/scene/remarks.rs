@@ -74,7 +74,7 @@ impl SceneFile {
     /// Remarks on springs.
     fn add_springs(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
         for (i, spring) in self.springs.iter().enumerate() {
-            add(format_args!("springs[{i}].ends"), odd_ends(spring.ends.map(i64::from)));
+            add(format_args!("springs[{i}].ends"), odd_ends(spring.ends));
             add(format_args!("springs[{i}].ks"), odd_strength(spring.ks));
             add(format_args!("springs[{i}].kd"), odd_strength(spring.kd));
             let length = spring.rest_length;
@@ -176,12 +176,12 @@ pub(super) fn odd_elasticity(Varied { mean, half_width }: Varied) -> Option<Stri
 }
 
 /// A remark on odd ends of a spring.
-pub(super) fn odd_ends([a, b]: [i64; 2]) -> Option<String> {
+fn odd_ends([a, b]: [u32; 2]) -> Option<String> {
     (a == b).then(|| format!("the spring joins particle {a} to itself, so it does nothing"))
 }
 
 /// A remark on an odd stiffness or damping of a spring.
-pub(super) fn odd_strength(number: f32) -> Option<String> {
+fn odd_strength(number: f32) -> Option<String> {
     (number < 0.0).then(|| format!("{number} is below 0, so the spring gains energy without bound"))
 }
 

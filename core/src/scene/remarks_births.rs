@@ -82,10 +82,17 @@ fn pointed<M>(emitter: &Emitter<Shape<String>, M>) -> Option<String> {
     is_lost.then(point)
 }
 
-/// A remark on an odd angle within which births leave. The lecture's recipe takes the sine of any.
+/// A remark on an odd angle within which births leave.
 fn odd_spread(spread: Spread) -> Option<String> {
-    let Spread::Uniform(cutoff) = spread else { return None };
-    (!(0.0..=HALF_TURN).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to π, which is all directions"))
+    let (cutoff, most, why) = match spread {
+        Spread::Uniform(cutoff) => (cutoff, HALF_TURN, "π, which is all directions"),
+        Spread::Lecture(cutoff) => {
+            (cutoff, 0.5 * HALF_TURN, "π/2: the lecture's recipe takes its sine, which is less again beyond")
+        }
+    };
+    // No angle is as large, and many are as large in degrees.
+    let degrees = if cutoff > 7.0 { format!("; of degrees take {:.4}", cutoff.to_radians()) } else { String::new() };
+    (!(0.0..=most).contains(&cutoff)).then(|| format!("{cutoff} rad is not from 0 to {why}{degrees}"))
 }
 
 /// A remark on a lifetime that some are born without.

@@ -36,7 +36,9 @@ impl SceneFile {
 
     /// Remarks on forces that do nothing in this scene, act twice, or too late.
     pub(super) fn add_forces(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
-        let (idle_wind, uncharged) = (!self.has_drag(), !self.has_charges());
+        // A program may put others into a scene that begins with nobody.
+        let is_peopled = !self.particles.is_empty() || !self.emitters.is_empty();
+        let (idle_wind, uncharged) = (is_peopled && !self.has_drag(), is_peopled && !self.has_charges());
         for (i, force) in self.forces.iter().enumerate() {
             match force {
                 ForceKind::Wind(wind) if wind.coefficient.is_none() && idle_wind => {

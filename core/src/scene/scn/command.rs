@@ -122,6 +122,12 @@ pub struct Commands<'a> {
     failed: bool,
 }
 
+/// The name of a command, as long as the program lasts.
+#[cfg(feature = "alloc")]
+pub(crate) fn known(name: &str) -> &'static str {
+    NAMES.into_iter().find(|known| *known == name).unwrap_or("")
+}
+
 /// The names of all commands.
 const NAMES: [&str; 23] = [
     "particle",

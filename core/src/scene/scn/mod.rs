@@ -14,5 +14,7 @@
 mod command;
 mod lex;
 
+#[cfg(feature = "alloc")]
+pub(super) use command::known;
 pub use command::{Command, Commands, Located, Scenery, Source, commands};
 pub use lex::{Index, Place, Problem, ScnError};
