@@ -1,7 +1,7 @@
 //! Scenes and meshes from disk.
 
 use crate::formats::{SceneFormat, format_of};
-use crate::locate::located;
+use crate::locate::{located, with_path};
 use crate::outcome::{Failure, Outcome, warn};
 use pointmass::scene::{self, Model, SceneError, SceneFile, Unknown, read_scn_with};
 pub use pointmass_files::disk::Disk;
@@ -92,7 +92,7 @@ fn read(path: &Path, unknown: Unknown) -> Outcome<(scene::Reading, Source)> {
         let reading = read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?;
         return Ok((reading, Source { name: name.into_owned(), json: None }));
     }
-    let scene = SceneFile::from_json(&name, &text)?;
+    let scene = SceneFile::from_json(&name, &text).map_err(|error| with_path(error, &text))?;
     let remarks = SceneFile::former_names(&text).into_iter().chain(scene.remarks());
     let remarks = remarks.chain(lost_textures(&scene, path)).map(|remark| format!("{name}:{remark}")).collect();
     let source = Source { name: name.into_owned(), json: Some(text) };

@@ -12,6 +12,29 @@ pub(crate) fn located(error: SceneError, text: &str) -> SceneError {
     }
 }
 
+/// An error that the JSON reader tells by line and column, with the path of the value there in its message if it is about a value.
+pub(crate) fn with_path(error: SceneError, text: &str) -> SceneError {
+    const ALONE: &str = "a name alone";
+    const ABOUT_VALUES: [&str; 5] = ["invalid ", "missing field", "unknown variant", "number out of range", ALONE];
+    if !ABOUT_VALUES.iter().any(|begin| error.message.starts_with(begin)) {
+        return error;
+    }
+    let text = text.trim_start_matches('\u{feff}');
+    let Some(end) = end_of(text, &error.place) else { return error };
+    // Of a name that stands alone it is known only when what follows has been seen.
+    let quote = text.get(..end).and_then(|before| before.rfind('"')).filter(|_| error.message.starts_with(ALONE));
+    let path = SceneFile::path_in_json(text, quote.map_or(end, |quote| quote + 1));
+    if path.is_empty() { error } else { SceneError { message: format!("{path}: {}", error.message), ..error } }
+}
+
+/// How many bytes of a text there are up to a place that is told as `line:column`.
+fn end_of(text: &str, place: &str) -> Option<usize> {
+    let (line, column) = place.split_once(':')?;
+    let (line, column) = (line.parse::<usize>().ok()?, column.parse::<usize>().ok()?);
+    let before: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
+    Some((before + column).min(text.len()))
+}
+
 /// The line, from 1, of the value at a path such as `scenery[0].shape.plane`, or of the innermost around it that is written; none, if that is all.
 fn line(text: &str, path: &str) -> Option<usize> {
     let mut value: &RawValue = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok()?;
@@ -45,6 +68,33 @@ fn inside<'t>(value: &'t RawValue, step: &str) -> Option<&'t RawValue> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn errors_of_the_reader_name_the_path() {
+        for (text, told) in [
+            (
+                "{\"emitters\": [{\n\"shape\": {\"sphere\": {\"center\": [0, 0],\n",
+                "a.json:2:37: emitters[0].shape.sphere.center: invalid length 2, expected a list of 3 numbers",
+            ),
+            (
+                "\u{feff}{\"particles\": [{},\n{\"mass\": \"1\"}]}",
+                "a.json:2:12: particles[1].mass: invalid type: string",
+            ),
+            (
+                "{\"forces\": [{\"gravity\": 9.81}]}",
+                "a.json:1:28: forces[0].gravity: invalid type: floating point `9.81`, expected an object",
+            ),
+            ("{\"springs\": [{\"ends\": [0, 1], \"rest_length\": 1}]}", "a.json:1:47: springs[0]: missing field `ks`"),
+            ("{\"forces\": [\"drag\"]}", "a.json:1:19: forces[0]: a name alone"),
+            ("{\"wind\": 1}", "a.json:1:7: unknown field"),
+            ("{\"particles\": [{]}", "a.json:1:17: key must be"),
+            (" \n", "a.json: there is nothing in it: a scene is an object"),
+        ] {
+            let error = SceneFile::from_json("a.json", text).expect_err(text);
+            let error = with_path(error, text).to_string();
+            assert!(error.starts_with(told), "{error}");
+        }
+    }
 
     #[test]
     fn values_are_found_by_their_paths() {

@@ -53,7 +53,7 @@ fn object(text: &str) -> Result<(SceneFile, Vec<String>), JsError> {
     let names = SceneFile::former_names(text).into_iter().map(|remark| {
         let place = remark.split_once(": ").and_then(|(place, rest)| {
             let column: usize = place.strip_prefix("1:")?.parse().ok()?;
-            Some((path::path(text, column.saturating_sub(1)), rest))
+            Some((SceneFile::path_in_json(text, column.saturating_sub(1)), rest))
         });
         match place {
             Some((at, rest)) if at.is_empty() => format!(" {rest}"),

@@ -13,6 +13,9 @@ impl SceneFile {
     /// If the text is no JSON, or says something that a scene does not know, with line and column.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim().is_empty() {
+            return Err(SceneError::file(name, "there is nothing in it: a scene is an object, {} at the least"));
+        }
         // Serde would take a list for the fields in order.
         if text.trim_start().starts_with('[') {
             return Err(SceneError::at(name, 1, 1, "a scene is an object, not a list"));
@@ -108,12 +111,15 @@ fn plain(message: &str) -> String {
         ("u8", "a whole number from 0 to 255"),
         ("u16", "a whole number from 0 to 65535"),
         ("u32", "a whole number from 0 to 4294967295"),
-        ("u64", "a whole number, zero or more"),
+        ("u64", "a whole number from 0 to 18446744073709551615"),
         ("struct Friction", r#"{"static": ..., "kinetic": ...}"#),
     ] {
         if let Some(rest) = message.strip_suffix(name).filter(|rest| rest.ends_with(", expected ")) {
             return format!("{rest}{meaning}");
         }
+    }
+    if let Some(rest) = message.strip_suffix("a sequence of 3 f32 values") {
+        return format!("{rest}a list of 3 numbers");
     }
     match message.rsplit_once(", expected struct ") {
         Some((what, name)) if name.chars().all(char::is_alphanumeric) => format!("{what}, expected an object"),

@@ -38,6 +38,8 @@ mod inline;
 mod isotropic;
 #[cfg(feature = "json")]
 mod json;
+#[cfg(feature = "json")]
+mod json_path;
 #[cfg(feature = "alloc")]
 mod material;
 #[cfg(feature = "alloc")]
