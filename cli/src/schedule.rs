@@ -34,6 +34,11 @@ impl Schedule {
         self.steps
     }
 
+    /// How long the last step is \[s\].
+    pub(crate) fn last(&self) -> f64 {
+        self.duration - self.steps.saturating_sub(1) as f64 * self.dt
+    }
+
     /// When step `n` ends, from 1.
     pub(crate) fn end(&self, n: u64) -> Time {
         let seconds = if n >= self.steps { self.duration } else { n as f64 * self.dt };
@@ -61,6 +66,8 @@ mod tests {
         ] {
             let schedule = Schedule::new(duration, dt);
             assert_eq!(schedule.steps(), steps, "{duration} in {dt}");
+            let last = duration - (steps.max(1) - 1) as f64 * dt;
+            assert!((schedule.last() - last).abs() < 1e-12 && last < dt + 1e-8, "{duration} in {dt}");
             let ends: Vec<_> = (0..=steps).map(|n| schedule.end(n)).collect();
             assert!(ends.windows(2).all(|e| e[0] < e[1]), "{duration} in {dt}");
             assert_eq!(ends.last(), Some(&Time::from_seconds_f64(duration)), "{duration} in {dt}");

@@ -26,7 +26,11 @@ pub(crate) fn run(args: &Run) -> Outcome {
         Some(steps) => Schedule::steps_of(steps, world.dt),
         None => Schedule::new(world.duration, world.dt),
     };
-    world.warn_of_steps(world.dt, schedule.end(schedule.steps()).seconds_f64());
+    // A run shorter than a step is one step as long as itself.
+    world.warn_of_steps(
+        if schedule.steps() == 1 { schedule.last() } else { world.dt },
+        schedule.end(schedule.steps()).seconds_f64(),
+    );
     warn(&args.idle());
     if args.group_error && !groups::are_taken(&world) {
         warn(&["--group-error does nothing: no force takes far groups as one, by a theta above 0".into()]);
@@ -43,7 +47,7 @@ pub(crate) fn run(args: &Run) -> Outcome {
     let substeps = effort.particle_steps as f64 * world.pace.told().total as f64 / (effort.steps as f64).max(1.0);
     warn(stall::told(world.system.totals(), substeps).as_slice());
 
-    let mut summary = Summary::of(&args.world.scene, &world, effort);
+    let mut summary = Summary::of(&args.world.scene, &world, schedule.last(), effort);
     summary.group_errors = args.group_error.then(|| groups::errors(&world));
     summary.ledger = ledger.map(|ledger| ledger.books().clone());
     recordings.finish()?;

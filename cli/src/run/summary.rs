@@ -23,6 +23,9 @@ pub(crate) struct Summary {
     pub(crate) seed: u64,
     /// Steps made.
     pub(crate) steps: u64,
+    /// How long the last of them was \[s\].
+    #[serde(skip)]
+    pub(crate) last: f64,
     /// The instant reached \[s\].
     pub(crate) time: f64,
     /// The division of steps.
@@ -64,13 +67,14 @@ pub(crate) struct Effort {
 
 impl Summary {
     /// Sums up the world as it is.
-    pub(crate) fn of(scene: &std::path::Path, world: &World, effort: Effort) -> Self {
+    pub(crate) fn of(scene: &std::path::Path, world: &World, last: f64, effort: Effort) -> Self {
         Self {
             scene: crate::load::name(scene).into_owned(),
             integrator: world.integrator().to_string(),
             dt: world.dt,
             seed: world.system.seed(),
             steps: effort.steps,
+            last,
             time: nanoseconds(world.system.time().seconds_f64()),
             substeps: world.pace.told(),
             live: world.system.len() as u64,
@@ -88,13 +92,27 @@ impl Summary {
         }
     }
 
+    /// How many steps of which length there were, in words.
+    fn lengths(&self) -> String {
+        /// What rounding makes of a last step \[s\].
+        const ROUNDING: f64 = 1e-6;
+        let (steps, dt, last) = (self.steps, self.dt, self.last);
+        let is_whole = (dt - last).abs() <= ROUNDING * dt;
+        match steps {
+            1 => format!("1 step of {:.6} s", if is_whole { dt } else { last }),
+            0 => format!("0 steps of {dt:.6} s"),
+            _ if is_whole => format!("{steps} steps of {dt:.6} s"),
+            _ => format!("{steps} steps of {dt:.6} s, the last of {last:.6} s,"),
+        }
+    }
+
     /// A page for people.
     pub(crate) fn text(&self) -> String {
         let Report { initial, born, died, refused, hits, contacts, broken, caps, effort } = &self.totals;
         let Measures { energy: Energy { kinetic, potential }, momentum, angular_momentum } = self.measures;
         let mut rows: Vec<(&str, String)> = vec![
             ("scene", self.scene.clone()),
-            ("run", format!("{} steps of {:.6} s by {}, seed {}", self.steps, self.dt, self.integrator, self.seed)),
+            ("run", format!("{} by {}, seed {}", self.lengths(), self.integrator, self.seed)),
             ("time", format!("{} s", self.time)),
         ];
         rows.extend(substeps(&self.substeps, self.steps).map(|told| ("sub-steps", told)));

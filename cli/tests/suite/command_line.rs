@@ -441,3 +441,20 @@ fn the_index_decides_nothing_but_the_time() {
         assert_eq!(finds_near, is_listed, "{text}");
     }
 }
+
+/// The summary tells the steps that were made: a run shorter than a step is one of its own length, and a remainder is told.
+#[test]
+fn steps_are_told_as_they_were_made() {
+    let folder = Folder::with("a.json", r#"{"particles": [{}]}"#);
+    for (args, told) in [
+        ("--dt 60 --duration 2", "1 step of 2.000000 s by"),
+        ("--dt 0.5 --duration 2", "4 steps of 0.500000 s by"),
+        ("--dt 0.3 --duration 1", "4 steps of 0.300000 s, the last of 0.100000 s, by"),
+        ("--dt 1/60 --duration 10", "600 steps of 0.016667 s by"),
+        ("--dt 0.5 --steps 1", "1 step of 0.500000 s by"),
+        ("--dt 0.5 --steps 0", "0 steps of 0.500000 s by"),
+    ] {
+        let answer = folder.run(&format!("run a.json {args}"));
+        assert!(answer.stdout.contains(told), "{args}: {}", answer.stdout);
+    }
+}
