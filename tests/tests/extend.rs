@@ -7,6 +7,8 @@ mod custom;
 mod loads;
 #[path = "extend/repeats.rs"]
 mod repeats;
+#[path = "extend/strangers.rs"]
+mod strangers;
 
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};

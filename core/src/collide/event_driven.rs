@@ -171,8 +171,7 @@ impl EventDriven<'_> {
             self.events.set(row, NextEvent { until: NEVER, ..*self.events.event(row) });
             return;
         }
-        let event = *self.events.event(row);
-        let path = self.path(row);
+        let (event, path) = (*self.events.event(row), self.path(row));
         let hull = path.hull(self.radius[row]);
         let mut next = NextEvent { until: NEVER, partner: NOBODY, ..event };
         let moves = event.waits == 0;
@@ -185,8 +184,9 @@ impl EventDriven<'_> {
         let (mut curved, mut found) = (false, 0_u32);
         let (home, room) = (self.home, self.room);
         let mut consider = |other: usize| {
-            // As an index defines who is near, whether there is one or not.
-            let offset = shortest(room, middle, home[other]);
+            // As an index defines who is near, whether there is one or not; rows that one makes up are nobody's.
+            let Some(&place) = home.get(other) else { return };
+            let offset = shortest(room, middle, place);
             found += u32::from(offset.dot(offset) <= reach * reach);
             // A wall comes first of several at one instant, then the lowest row: whatever order they are looked at in.
             // Nobody is met before the path begins.

@@ -285,7 +285,11 @@ impl<'a> Near<'a> {
         self.index.with_index(&mut self.memory[..words], points, farther, room, &mut |index| match index {
             Some(index) => then(&|place, visit| {
                 index.within(place, farther, &mut |rows| {
-                    let sure = |&&row: &&u32| room.is_none() || is_near(room, place, points[row as usize], reach);
+                    // An index of somebody else's may hand out rows that there are not.
+                    let sure = |&&row: &&u32| {
+                        let point = points.get(row as usize);
+                        point.is_some_and(|&point| room.is_none() || is_near(room, place, point, reach))
+                    };
                     rows.iter().filter(sure).for_each(|&row| visit(row));
                 });
             }),
@@ -310,7 +314,10 @@ impl<'a> Near<'a> {
         self.index.with_index(&mut self.memory[..words], points, farther, room, &mut |index| match index {
             Some(index) => {
                 index.pairs(farther, &mut |row, others| {
-                    let sure = |&&other: &&u32| room.is_none() || near(points[row as usize], points[other as usize]);
+                    let Some(&point) = points.get(row as usize) else { return };
+                    let sure = |&&other: &&u32| {
+                        points.get(other as usize).is_some_and(|&other| room.is_none() || near(point, other))
+                    };
                     others.iter().filter(sure).for_each(|&other| visit(row, other));
                 });
             }

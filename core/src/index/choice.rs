@@ -43,7 +43,8 @@ pub trait IndexChoice: Sync {
     /// Vectors of memory that it takes for each particle. With few particles they may not do: then there is no index.
     fn columns(&self) -> usize;
 
-    /// Calls `then` with the points in an index, or with none if it has no memory for them: in a room, if there is one, or in all of space.
+    /// Calls `then` with the points in an index, or with none if it has no memory for them: in a room, if there is one, or in all of space. It has to do so
+    /// exactly once, and rows of that index have to be below `points.len()`: others are passed over.
     fn with_index(
         &self,
         memory: &mut [u32],

@@ -203,7 +203,9 @@ impl<'a> Neighbours<'a> {
         let next = |from: u32| {
             let (mut found, mut len) = ([0; MOST], 0);
             index.within(own.1, farther, &mut |others| {
-                for &other in others.iter().filter(|&&other| other >= from && other as usize != row) {
+                let is_next =
+                    |&&other: &&u32| other >= from && other as usize != row && (other as usize) < self.points.len();
+                for &other in others.iter().filter(is_next) {
                     least::put(&mut found, &mut len, other, |one, other| one < other);
                 }
             });

@@ -8,6 +8,9 @@ use glam::Vec3;
 ///
 /// Rows are the positions of points in the slice the index was built from. Rows that are not finite are left out and
 /// counted in [`Stats::skipped`]. A negative or undefined radius finds nothing.
+///
+/// Every row that an index hands out, and every place in [`order`](Self::order), has to be below `points.len()` of the last `build` or `refit`. Steps
+/// pass over rows that there are not; what else they make of an index that is wrong about who is near is bounded, but nothing is counted.
 pub trait SpatialIndex: Sync {
     /// Sorts `points` in. `reach` \[m\] is the radius that most queries will have; grids make their cells as large,
     /// trees do not need it. Zero: choose by the density.
