@@ -101,16 +101,17 @@ impl Bodies<'_> {
         self.loads.get(row).map_or(Vec3::ZERO, |load| load.moment)
     }
 
-    /// The inverse mass of a particle with all that is laid on it \[1/kg\].
+    /// The inverse mass of a particle with all that is laid on it \[1/kg\]; zero in a row that there is not.
     #[must_use]
     pub fn laden_inverse(&self, row: usize) -> f32 {
-        let (inverse, load) = (self.inverse_mass[row], self.load(row));
+        let (inverse, load) = (self.inverse_mass.get(row).copied().unwrap_or(0.0), self.load(row));
         if load > 0.0 && inverse > 0.0 { inverse / (1.0 + inverse * load) } else { inverse }
     }
 
     /// Says that a particle is about to be moved with what is laid on it.
     pub fn take_up(&mut self, row: usize) {
-        let now = [self.position[row], self.velocity[row]];
+        let (Some(&x), Some(&v)) = (self.position.get(row), self.velocity.get(row)) else { return };
+        let now = [x, v];
         if let Some(load) = self.loads.get_mut(row).filter(|load| load.mass > 0.0) {
             load.by = [load.by[0] - now[0], load.by[1] - now[1]];
         }
@@ -118,7 +119,8 @@ impl Bodies<'_> {
 
     /// Says that it has been: whoever has laid that on the particle gives it the impulse.
     pub fn put_down(&mut self, row: usize) {
-        let now = [self.position[row], self.velocity[row]];
+        let (Some(&x), Some(&v)) = (self.position.get(row), self.velocity.get(row)) else { return };
+        let now = [x, v];
         if let Some(load) = self.loads.get_mut(row).filter(|load| load.mass > 0.0) {
             let by = [load.by[0] + now[0], load.by[1] + now[1]];
             load.by = if by.iter().all(|by| by.is_finite()) { by } else { [Vec3::ZERO; 2] };

@@ -125,21 +125,26 @@ impl Bodies<'_> {
         (number < self.start && self.serial.get(row) == Some(&number) && lives()).then_some(row)
     }
 
-    /// The way from one row to another \[m\]: the shortest, in a [periodic room](crate::index::Periodic).
+    /// The way from one row to another \[m\]: the shortest, in a [periodic room](crate::index::Periodic). None to or from a row that there is not: zero.
     #[must_use]
     pub fn between(&self, from: usize, to: usize) -> Vec3 {
-        between(self.near.index.room(), self.position[from], self.position[to])
+        match (self.position.get(from), self.position.get(to)) {
+            (Some(&from), Some(&to)) => between(self.near.index.room(), from, to),
+            _ => Vec3::ZERO,
+        }
     }
 
     /// Moves a particle by `by` \[m\], and lets its velocity follow: by what that is over the sub-step. Whoever is
-    /// fixed is moved as well: a constraint leaves out rows whose inverse mass is zero.
+    /// fixed is moved as well: a constraint leaves out rows whose inverse mass is zero. A row that there is not is passed over.
     pub fn shift(&mut self, row: usize, by: Vec3) {
-        self.position[row] += by;
         let h = self.substep.seconds();
+        let (x, v, mark) = (self.position.get_mut(row), self.velocity.get_mut(row), self.marks.get_mut(row));
+        let (Some(x), Some(v), Some(mark)) = (x, v, mark) else { return };
+        *x += by;
         if h > 0.0 {
-            self.velocity[row] += by * (1.0 / h);
+            *v += by * (1.0 / h);
         }
-        self.marks[row] |= SHIFTED;
+        *mark |= SHIFTED;
     }
 
     /// Moves a particle as [`shift`](Self::shift) does, and by what rounding has left of its way before; keeps what it leaves of it now \[m\].
@@ -210,9 +215,11 @@ impl Bodies<'_> {
     }
 
     /// Says that the particle in a row is kept from the surface it touches, and needs no other answer to it in this sub-step:
-    /// the sweep then only sees that its inner half does not pass through.
+    /// the sweep then only sees that its inner half does not pass through. A row that there is not is passed over.
     pub fn mark_touching(&mut self, row: usize) {
-        self.marks[row] |= SHIFTED | TOUCHING;
+        if let Some(mark) = self.marks.get_mut(row) {
+            *mark |= SHIFTED | TOUCHING;
+        }
     }
 
     /// Says that particles, by their places in the scene's start, are held in their places to each other through the step: contacts between them are

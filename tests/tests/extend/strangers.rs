@@ -1,6 +1,7 @@
 //! Rows that there are not, which an index of a user's own hands out: steps pass over them.
 
 use core::ops::Range;
+use pointmass::constrain::{Bodies, Demand, Share};
 use pointmass::index::{Cost, Hash, IndexChoice, Neighbour, Periodic, Room, SpatialIndex, Stats, Structure, TooSmall};
 use pointmass::{Constraint, Contacts, Dense, Force, Meetings, Particle, Penalty, Scene, Time, Vec3, force::Friction};
 use pointmass_tests::{Random, started};
@@ -110,4 +111,39 @@ fn rows_that_there_are_not_are_passed_over() {
     for is_room in [false, true] {
         assert!(states(true, is_room) == states(false, is_room), "in a room: {is_room}");
     }
+}
+
+/// A constraint that speaks of rows that there are not.
+struct Mistaken;
+
+impl Constraint for Mistaken {
+    fn demand(&self) -> Demand {
+        Demand { loads: true, postpones: true, ..Demand::NONE }
+    }
+    fn prepare(&self, bodies: &mut Bodies<'_>, _: &mut Share<'_>) {
+        for row in [bodies.len(), usize::MAX] {
+            bodies.bear(row);
+            bodies.lay_on(row, 1.0, Vec3::X);
+        }
+    }
+    fn project(&self, bodies: &mut Bodies<'_>, _: &mut Share<'_>) {
+        for row in [bodies.len(), usize::MAX] {
+            bodies.take_up(row);
+            bodies.shift(row, Vec3::X);
+            bodies.put_down(row);
+            bodies.mark_touching(row);
+            bodies.postpone(row, Vec3::X);
+            assert_eq!([bodies.between(0, row), bodies.between(row, 0)], [Vec3::ZERO; 2]);
+            assert_eq!(bodies.laden_inverse(row), 0.0);
+        }
+    }
+}
+
+#[test]
+fn constraints_move_nobody_in_rows_that_there_are_not() {
+    let start = [Particle { velocity: Vec3::X, ..Particle::REST }];
+    let scene = Scene { start: &start, constraints: &Mistaken, ..Scene::EMPTY };
+    let mut system = started(&scene, 1, 0);
+    system.step(&scene, Time::SECOND);
+    assert_eq!((system.len(), system.particles().position[0]), (1, Vec3::X));
 }
