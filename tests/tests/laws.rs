@@ -40,6 +40,7 @@ mod implicit;
 mod indices;
 mod integrators;
 mod isotropic_sheets;
+mod lacking;
 mod laden_sheets;
 mod ledger;
 mod ledges;
