@@ -43,12 +43,17 @@ use glam::Vec3;
 ///     }
 ///     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
 ///         let number = births.claim();
-///         for at in births.due(number, 10.0, from, to) {
-///             // Who finds no room is counted.
-///             let _ = births.give(number, at, |random| Particle {
+///         let mut due = births.due(number, 10.0, from, to);
+///         while let Some(at) = due.next() {
+///             let born = births.give(number, at, |random| Particle {
 ///                 position: Vec3::X * random.units(0)[0],
 ///                 ..Particle::REST
 ///             });
+///             // Where there is no room, however many are due, the others are counted at once.
+///             if born.is_err() {
+///                 births.refuse(number, due.left());
+///                 break;
+///             }
 ///         }
 ///     }
 /// }
@@ -80,7 +85,8 @@ pub trait Emit: Sync {
 
     /// Brings about the births between `from` (excluded) and `to` (included).
     ///
-    /// Claims as many numbers of `births` as `count` says: births by others may find no memory, and are refused then.
+    /// Claims as many numbers of `births` as `count` says: births by others may find no memory, and are refused then. To keep the work of a step bounded, give no
+    /// more when one has found no room, and [refuse](Births::refuse) the others at once.
     fn emit(&self, from: Time, to: Time, births: &mut Births<'_>);
 }
 
@@ -134,7 +140,7 @@ impl Births<'_> {
     }
 
     /// The births that emitter `number` owes at `rate` per second after `from` until `to`, and goes on from them. A number beyond those that
-    /// there is memory for owes what it would if it had always been there, all of which is refused.
+    /// there is memory for owes what it would if it had always been there, all of which is refused. There may be any number of them.
     pub fn due(&mut self, number: usize, rate: f32, from: Time, to: Time) -> Due {
         // Rates are whole numbers of 2⁻³² births per second, which is 2⁻⁶⁴ births per tick.
         let rate = fixed_32(rate);
