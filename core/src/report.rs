@@ -147,7 +147,9 @@ pub struct Caps {
     /// Births that should lie inside a shape, for which no place was found there, so that they lie on its surface: it is too thin, or open. No part of the
     /// system's hash.
     pub outside: u64,
-    /// A step could not be made since the scene needs more emitters, springs or work columns than the system has.
+    /// A step could not be made, and time has not gone on: the scene needs more emitters, springs, columns to work with or kept words than the system
+    /// has ([`Scene::size_for`](crate::Scene::size_for)), or columns of their own of drags, masses and inverse masses (materials that change them) or of the ends of lists of springs, where
+    /// memory holds these for all particles alike.
     pub insufficient_memory: u64,
 }
 

@@ -103,6 +103,10 @@ impl<B: Storage> System<B> {
     /// Moves the world on by `dt`; in no time nobody moves, and only reapers and what writes columns are asked. It cannot fail, does not panic, and its work is bounded; whatever a bound cut
     /// short is counted in the report.
     ///
+    /// A step for which there is not enough memory is not made: the state, and [`time`](Self::time) with it, stay as they are, which
+    /// [`Caps::insufficient_memory`](crate::Caps::insufficient_memory) counts. No step leads beyond [`Time::NEVER`]: one that would ends there, and one that begins there is one in no
+    /// time, uncounted. So a loop until an instant has to look whether time has gone on.
+    ///
     /// It works in the memory that the system has, and on the stack, of which most programs have far more than enough; on small chips
     /// it is worth measuring (the crate's front page says how much some scenes take).
     pub fn step(&mut self, scene: &Scene<'_>, dt: Time) -> Report {
@@ -111,7 +115,8 @@ impl<B: Storage> System<B> {
 
     /// Moves the world on, in one step, to an instant; not back, and not at all where it is there.
     ///
-    /// Stepping to [`Time::frame`] after frame drifts by nothing, however long.
+    /// Stepping to [`Time::frame`] after frame drifts by nothing, however long. As with [`step`](Self::step), time stays where it is if there is not
+    /// enough memory.
     pub fn step_to(&mut self, scene: &Scene<'_>, instant: Time) -> Report {
         self.step_to_observed(scene, instant, &mut ())
     }

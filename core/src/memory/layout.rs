@@ -52,7 +52,7 @@ impl Words {
 pub struct Demand {
     /// The words that it keeps from step to step: all zeros at the system's start, and what is kept of a particle at its birth. It goes with
     /// the particles, and is in the system's hash. Parts find theirs by their order: where constraints change in number, kind or size between
-    /// steps, those of the engine begin anew ([`Kept::claim`]).
+    /// steps, those of the engine begin anew ([`Kept::claim`], for which it has to ask for one fixed word at least).
     pub kept: Words,
     /// The words that it keeps through a step; at the step's beginning they hold anything.
     pub step: Words,
@@ -237,7 +237,8 @@ pub struct Kept<'m> {
 impl Kept<'_> {
     /// Makes the words those of the constraint of a `name`, which the first of the others tells; tells whether they have been somebody else's,
     /// or nobody's: all of them but that one are zeros then. A name above zero that differs by kind and by size keeps a system that goes
-    /// on with other constraints than it was started with from reading what these have left.
+    /// on with other constraints than it was started with from reading what these have left. Where there are no other words, there is nothing that could tell:
+    /// it says no, always, and leaves those of particles as they are.
     ///
     /// ```
     /// use pointmass::constrain::Kept;

@@ -9,6 +9,9 @@ use crate::particles::Particle;
 use glam::Vec3;
 
 /// Memory that a system can live in. Fresh memory is all zeros.
+///
+/// Both functions have to hand out the same memory whenever they are called: columns of the same lengths, with what has been written to them. Where columns
+/// become shorter while particles live in them, steps panic; that is the one thing which nobody looks after in a step.
 pub trait Storage {
     /// All of it, for changing.
     fn slices(&mut self) -> Slices<'_>;
