@@ -13,7 +13,7 @@ mod strangers;
 use core::ops::Range;
 use pointmass::constrain::{Bodies, Demand, Share, Words};
 use pointmass::emit::{Births, EmitterState};
-use pointmass::force::State;
+use pointmass::force::{Perturbation, State};
 use pointmass::index::{Cost, IndexChoice, Neighbour, Room, SpatialIndex, Stats, Structure, TooSmall};
 use pointmass::integrate::{Dynamics, Motion};
 use pointmass::reap::Verdicts;
@@ -122,6 +122,35 @@ fn an_integrator() {
             assert!((f64::from(x.x) - expected).abs() < 2e-5 && x.y == p.position.y);
         }
     }
+}
+
+/// Asks for the forces on more particles than there are.
+struct Greedy;
+
+impl Integrator for Greedy {
+    fn columns(&self) -> usize {
+        1
+    }
+    fn advance(&self, motion: Motion<'_>, time: Time, _: Time, world: &mut dyn Dynamics) {
+        let Motion { position, velocity, .. } = motion;
+        world.linearise(time, position, velocity, &mut |system| {
+            let (mut total, along) = ([Vec3::X; 3], [Vec3::ONE; 3]);
+            system.force(&mut total);
+            assert_eq!(total, [Gravity::EARTH.acceleration, Vec3::ZERO, Vec3::ZERO]);
+            system.jacobian(&Perturbation { along: &along, position: 0.0, velocity: 1.0 }, &mut total);
+            assert_eq!(total, [Vec3::splat(-0.5), Vec3::ZERO, Vec3::ZERO]);
+            system.stiffness([0.0, 1.0], &mut total);
+            assert_eq!(total, [Vec3::splat(0.5), Vec3::ZERO, Vec3::ZERO]);
+        });
+    }
+}
+
+#[test]
+fn there_are_no_forces_beyond_the_particles() {
+    let start = [Particle { drag: 0.5, ..Particle::REST }];
+    let forces = (Gravity::EARTH, Drag {});
+    let scene = Scene { start: &start, forces: &forces, integrator: &Greedy, ..Scene::EMPTY };
+    started(&scene, 1, 0).step(&scene, Time::SECOND);
 }
 
 /// A wire bent to a circle about the z axis, on which beads are threaded, and which counts in its own memory how often it has

@@ -76,22 +76,29 @@ impl<'a> Linear<'a> {
         Self { forces, state: *state, inverse_mass }
     }
 
-    /// The force on every particle \[N\].
+    /// The force on every particle \[N\]. Entries of `total` beyond the particles are zero, here as in what follows.
     pub fn force(&self, total: &mut [Vec3]) {
-        total.fill(Vec3::ZERO);
+        let total = self.cleared(total);
         self.forces.iter().for_each(|part| part.add_to(&self.state, 0..total.len(), total));
     }
 
     /// How it changes with the state \[N\]: [`Force::add_jacobian`].
     pub fn jacobian(&self, change: &Perturbation<'_>, total: &mut [Vec3]) {
-        total.fill(Vec3::ZERO);
+        let total = self.cleared(total);
         self.forces.iter().for_each(|part| part.add_jacobian(&self.state, change, total));
     }
 
     /// The diagonal of that, its sign turned round: [`Force::add_stiffness`].
     pub fn stiffness(&self, weights: [f32; 2], total: &mut [Vec3]) {
-        total.fill(Vec3::ZERO);
+        let total = self.cleared(total);
         self.forces.iter().for_each(|part| part.add_stiffness(&self.state, weights, total));
+    }
+
+    /// As many zeros as there are particles, of those that there is room for.
+    fn cleared<'t>(&self, total: &'t mut [Vec3]) -> &'t mut [Vec3] {
+        total.fill(Vec3::ZERO);
+        let len = total.len().min(self.inverse_mass.len());
+        &mut total[..len]
     }
 }
 
