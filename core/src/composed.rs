@@ -1,4 +1,4 @@
-//! Traits that are closed under composition: slices, arrays, lists and tuples of X are X.
+//! Traits that are closed under composition: slices, arrays, lists, options and tuples of X are X, and so is what stands for one.
 
 /// Does something with each part: of a list one after the other, of a tuple each by its own type, so that nothing is asked through a table and
 /// parts cost nothing that leave a function as it is.
@@ -16,7 +16,17 @@ macro_rules! each {
     };
 }
 
-/// Makes lists and tuples of a trait's kinds kinds of it. `$parts!(parts)` has to expand to the trait's functions for a `self` that is made
+/// Makes whatever stands for one of a trait's kinds one of it: a reference, and on the heap a box. What they do has to be said by `**self`.
+macro_rules! stands_for {
+    ($kind:ident { $($does:tt)* }) => {
+        impl<T: $kind + ?Sized> $kind for &T { $($does)* }
+
+        #[cfg(feature = "alloc")]
+        impl<T: $kind + ?Sized> $kind for alloc::boxed::Box<T> { $($does)* }
+    };
+}
+
+/// Makes lists, options and tuples of a trait's kinds kinds of it. `$parts!(parts)` has to expand to the trait's functions for a `self` that is made
 /// of what `each!(self, parts, part => { .. })` goes over.
 macro_rules! composed {
     ($kind:ident by $parts:ident) => {
@@ -37,6 +47,11 @@ macro_rules! composed {
             $parts!([]);
         }
 
+        #[allow(for_loops_over_fallibles, reason = "an option is a list of one or of none")]
+        impl<T: $kind> $kind for Option<T> {
+            $parts!([]);
+        }
+
         composed!($kind by $parts, A);
         composed!($kind by $parts, A B);
         composed!($kind by $parts, A B C);
@@ -51,4 +66,4 @@ macro_rules! composed {
     };
 }
 
-pub(crate) use {composed, each};
+pub(crate) use {composed, each, stands_for};

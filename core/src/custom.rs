@@ -1,5 +1,6 @@
 //! Columns of a user's own: numbers with names that each particle carries along.
 
+use crate::composed::stands_for;
 use crate::memory::{Columns, Layout, Slices, Workspace};
 use core::fmt;
 use core::ops::Range;
@@ -28,7 +29,7 @@ impl<'a> Custom<'a> {
     }
 }
 
-/// The columns of a user's own that a scene has. A slice or reference of them is one.
+/// The columns of a user's own that a scene has. A slice, vector, reference or box of them is one.
 ///
 /// Numbers lie in memory by a column's place in the list. Names are for who asks: a system that goes on with a scene whose list has other names, or
 /// the same in another order, has the numbers of before under these. Columns that come behind them hold whatever lay there, such as
@@ -109,15 +110,17 @@ impl CustomList for () {
     }
 }
 
-impl<T: CustomList + ?Sized> CustomList for &T {
-    fn count(&self) -> usize {
-        (**self).count()
-    }
-    fn get(&self, number: usize) -> Option<Custom<'_>> {
-        (**self).get(number)
-    }
-    fn code(&self) -> Option<CustomCode> {
-        (**self).code()
+stands_for! {
+    CustomList {
+        fn count(&self) -> usize {
+            (**self).count()
+        }
+        fn get(&self, number: usize) -> Option<Custom<'_>> {
+            (**self).get(number)
+        }
+        fn code(&self) -> Option<CustomCode> {
+            (**self).code()
+        }
     }
 }
 
@@ -127,6 +130,16 @@ impl CustomList for [Custom<'_>] {
     }
     fn get(&self, number: usize) -> Option<Custom<'_>> {
         <[_]>::get(self, number).copied()
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl CustomList for alloc::vec::Vec<Custom<'_>> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+    fn get(&self, number: usize) -> Option<Custom<'_>> {
+        self.as_slice().get(number).copied()
     }
 }
 

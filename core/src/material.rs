@@ -1,5 +1,6 @@
 //! Materials of particles and surfaces: their feel to what touches them, and the looks and properties of particles over their lives.
 
+use crate::composed::stands_for;
 use crate::force::Friction;
 use crate::math::{max, sqrt};
 use crate::memory::{Layout, Slices};
@@ -382,21 +383,23 @@ impl MaterialList for () {
     }
 }
 
-impl<T: MaterialList + ?Sized> MaterialList for &T {
-    fn count(&self) -> usize {
-        (**self).count()
-    }
-    fn get(&self, number: usize) -> Option<Material<'_>> {
-        (**self).get(number)
-    }
-    fn contact(&self, number: usize) -> ContactMaterial {
-        (**self).contact(number)
-    }
-    fn code(&self) -> Option<MaterialCode> {
-        (**self).code()
-    }
-    fn mixing(&self) -> Option<Mixing> {
-        (**self).mixing()
+stands_for! {
+    MaterialList {
+        fn count(&self) -> usize {
+            (**self).count()
+        }
+        fn get(&self, number: usize) -> Option<Material<'_>> {
+            (**self).get(number)
+        }
+        fn contact(&self, number: usize) -> ContactMaterial {
+            (**self).contact(number)
+        }
+        fn code(&self) -> Option<MaterialCode> {
+            (**self).code()
+        }
+        fn mixing(&self) -> Option<Mixing> {
+            (**self).mixing()
+        }
     }
 }
 

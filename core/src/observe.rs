@@ -1,5 +1,6 @@
 //! Looking on while a step is made.
 
+use crate::composed::{composed, each};
 use crate::custom::CustomColumnsMut;
 use crate::force::State;
 use crate::math::max;
@@ -8,7 +9,8 @@ use crate::reap::Cause;
 use crate::time::Time;
 use glam::Vec3;
 
-/// Watches the phases of a step: what ledgers and recorders of events are made of. `()` looks away, and a pair of observers is one.
+/// Watches the phases of a step: what ledgers and recorders of events are made of. `()` looks away. A tuple, list,
+/// option or box of observers is one, by turns, and so is a `&mut` to one.
 ///
 /// ```
 /// use pointmass::{Attention, Cause, Heap, LifeEvent, Observer, Particle, Scene, System, Time};
@@ -94,90 +96,108 @@ impl Observer for () {
     }
 }
 
-/// Both watch, the first before the second.
-impl<A: Observer, B: Observer> Observer for (A, B) {
-    fn after(&mut self, phase: Phase, state: &State<'_>) {
-        self.0.after(phase, state);
-        self.1.after(phase, state);
-    }
-
-    fn attention(&self) -> Attention {
-        self.0.attention().max(self.1.attention())
-    }
-
-    fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
-        self.0.write(state, custom);
-        self.1.write(state, custom);
-    }
-
-    fn hit(&mut self, hit: &Impact) {
-        self.0.hit(hit);
-        self.1.hit(hit);
-    }
-
-    fn touched(&mut self, touch: &Impact) {
-        self.0.touched(touch);
-        self.1.touched(touch);
-    }
-
-    fn slid(&mut self, slide: &Sliding) {
-        self.0.slid(slide);
-        self.1.slid(slide);
-    }
-
-    fn born(&mut self, birth: &LifeEvent) {
-        self.0.born(birth);
-        self.1.born(birth);
-    }
-
-    fn died(&mut self, death: &LifeEvent, cause: Cause) {
-        self.0.died(death, cause);
-        self.1.died(death, cause);
-    }
-
-    fn refused(&mut self, count: u64, time: Time) {
-        self.0.refused(count, time);
-        self.1.refused(count, time);
-    }
+/// The methods of an observer that has parts: all watch, one after the other.
+macro_rules! all_watch {
+    ($parts:tt) => {
+        fn after(&mut self, phase: Phase, state: &State<'_>) {
+            each!(self, $parts, part => {
+                part.after(phase, state);
+            });
+        }
+        fn attention(&self) -> Attention {
+            let mut most = Attention::Nothing;
+            each!(self, $parts, part => {
+                most = most.max(part.attention());
+            });
+            most
+        }
+        fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
+            each!(self, $parts, part => {
+                part.write(state, custom);
+            });
+        }
+        fn hit(&mut self, hit: &Impact) {
+            each!(self, $parts, part => {
+                part.hit(hit);
+            });
+        }
+        fn touched(&mut self, touch: &Impact) {
+            each!(self, $parts, part => {
+                part.touched(touch);
+            });
+        }
+        fn slid(&mut self, slide: &Sliding) {
+            each!(self, $parts, part => {
+                part.slid(slide);
+            });
+        }
+        fn born(&mut self, birth: &LifeEvent) {
+            each!(self, $parts, part => {
+                part.born(birth);
+            });
+        }
+        fn died(&mut self, death: &LifeEvent, cause: Cause) {
+            each!(self, $parts, part => {
+                part.died(death, cause);
+            });
+        }
+        fn refused(&mut self, count: u64, time: Time) {
+            each!(self, $parts, part => {
+                part.refused(count, time);
+            });
+        }
+    };
 }
 
-/// Whoever is lent watches as its owner would.
-impl<O: Observer + ?Sized> Observer for &mut O {
-    fn attention(&self) -> Attention {
-        (**self).attention()
-    }
+composed!(Observer by all_watch);
 
-    fn after(&mut self, phase: Phase, state: &State<'_>) {
-        (**self).after(phase, state);
-    }
+/// Whoever stands for another watches as that would.
+macro_rules! as_it_would {
+    ($($(#[$when:meta])* $this:ty;)+) => {$(
+        $(#[$when])*
+        impl<O: Observer + ?Sized> Observer for $this {
+            fn attention(&self) -> Attention {
+                (**self).attention()
+            }
 
-    fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
-        (**self).write(state, custom);
-    }
+            fn after(&mut self, phase: Phase, state: &State<'_>) {
+                (**self).after(phase, state);
+            }
 
-    fn hit(&mut self, hit: &Impact) {
-        (**self).hit(hit);
-    }
+            fn write(&mut self, state: &State<'_>, custom: &mut CustomColumnsMut<'_>) {
+                (**self).write(state, custom);
+            }
 
-    fn touched(&mut self, touch: &Impact) {
-        (**self).touched(touch);
-    }
+            fn hit(&mut self, hit: &Impact) {
+                (**self).hit(hit);
+            }
 
-    fn slid(&mut self, slide: &Sliding) {
-        (**self).slid(slide);
-    }
+            fn touched(&mut self, touch: &Impact) {
+                (**self).touched(touch);
+            }
 
-    fn born(&mut self, birth: &LifeEvent) {
-        (**self).born(birth);
-    }
+            fn slid(&mut self, slide: &Sliding) {
+                (**self).slid(slide);
+            }
 
-    fn died(&mut self, death: &LifeEvent, cause: Cause) {
-        (**self).died(death, cause);
-    }
+            fn born(&mut self, birth: &LifeEvent) {
+                (**self).born(birth);
+            }
 
-    fn refused(&mut self, count: u64, time: Time) {
-        (**self).refused(count, time);
-    }
+            fn died(&mut self, death: &LifeEvent, cause: Cause) {
+                (**self).died(death, cause);
+            }
+
+            fn refused(&mut self, count: u64, time: Time) {
+                (**self).refused(count, time);
+            }
+        }
+    )+};
+}
+as_it_would! {
+    &mut O;
+    #[cfg(feature = "alloc")]
+    alloc::boxed::Box<O>;
 }
 
 /// The parts of a step that an observer wants to know of: each of these is more than the one before.

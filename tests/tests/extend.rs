@@ -1,6 +1,8 @@
 //! Everything that a user can bring along: forces, integrators, constraints, emitters, colliders, reapers, indices, observers,
 //! memory; and columns of their own.
 
+#[path = "extend/composed.rs"]
+mod composed;
 #[path = "extend/custom.rs"]
 mod custom;
 #[path = "extend/loads.rs"]

@@ -26,6 +26,8 @@ pub enum Meetings {
 ///
 /// Where walls bear one that meets another, what that pushes it into them by they take up in the same instant, without a bounce; two that stay in touch
 /// go on along their walls.
+///
+/// There is but one, [`Meetings::IMPULSE`], which its default is as well.
 #[derive(Clone, Copy)]
 pub struct Impulse {
     /// The function that does it. A program that does not name it does not carry it about.
@@ -41,6 +43,12 @@ impl PartialEq for Impulse {
 impl core::fmt::Debug for Impulse {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("Impulse")
+    }
+}
+
+impl Default for Impulse {
+    fn default() -> Self {
+        Self { follow: impulse::follow }
     }
 }
 

@@ -61,12 +61,12 @@ pub use crate::cloth::Hinge;
 pub use crate::cloth::mesh_hinges;
 pub use crate::memory::{Demand, Kept, Words};
 
-use crate::composed::{composed, each};
+use crate::composed::{composed, each, stands_for};
 use crate::observe::Phase;
 
 /// Something that the places and velocities of particles have to satisfy.
 ///
-/// A tuple, slice or reference of constraints is a constraint: all of them, one after the other in each phase. Every
+/// A tuple, slice, option, reference or box of constraints is a constraint: all of them, one after the other in each phase. Every
 /// constraint sees what those before it have done.
 ///
 /// Newborns come under it in the step after that of their birth. Colliders act at the end of each sub-step: what they stop
@@ -209,36 +209,38 @@ impl Constraint for () {
     fn project(&self, _: &mut Bodies<'_>, _: &mut Share<'_>) {}
 }
 
-impl<T: Constraint + ?Sized> Constraint for &T {
-    fn demand(&self) -> Demand {
-        (**self).demand()
-    }
-    fn is_empty(&self) -> bool {
-        (**self).is_empty()
-    }
-    fn code(&self) -> Option<ConstraintCode> {
-        (**self).code()
-    }
-    fn bind(&self, bodies: &mut Bodies<'_>) {
-        (**self).bind(bodies);
-    }
-    fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        (**self).prepare(bodies, share);
-    }
-    fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        (**self).begin(bodies, share);
-    }
-    fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        (**self).project(bodies, share);
-    }
-    fn repeats(&self) -> bool {
-        (**self).repeats()
-    }
-    fn project_again(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) -> bool {
-        (**self).project_again(bodies, share)
-    }
-    fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        (**self).settle(bodies, share);
+stands_for! {
+    Constraint {
+        fn demand(&self) -> Demand {
+            (**self).demand()
+        }
+        fn is_empty(&self) -> bool {
+            (**self).is_empty()
+        }
+        fn code(&self) -> Option<ConstraintCode> {
+            (**self).code()
+        }
+        fn bind(&self, bodies: &mut Bodies<'_>) {
+            (**self).bind(bodies);
+        }
+        fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+            (**self).prepare(bodies, share);
+        }
+        fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+            (**self).begin(bodies, share);
+        }
+        fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+            (**self).project(bodies, share);
+        }
+        fn repeats(&self) -> bool {
+            (**self).repeats()
+        }
+        fn project_again(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) -> bool {
+            (**self).project_again(bodies, share)
+        }
+        fn settle(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
+            (**self).settle(bodies, share);
+        }
     }
 }
 
@@ -340,11 +342,6 @@ macro_rules! all_of {
             });
         }
     };
-}
-
-#[allow(for_loops_over_fallibles, reason = "an option is a list of one or of none")]
-impl<T: Constraint> Constraint for Option<T> {
-    all_of!([]);
 }
 
 composed!(Constraint by all_of);

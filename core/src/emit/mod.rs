@@ -13,6 +13,7 @@ pub use jet::Jet;
 pub use state::EmitterState;
 pub use vary::{Spread, Varied};
 
+use crate::composed::stands_for;
 use crate::custom::CustomColumnsMut;
 use crate::force::{Backdrop, State};
 use crate::index::{Neighbours, SpatialIndex};
@@ -27,7 +28,7 @@ use glam::Vec3;
 
 /// Something that brings particles into the world.
 ///
-/// A tuple, slice or reference of emitters is an emitter. Each has a number, its place in the flattened list, and
+/// A tuple, slice, option, reference or box of emitters is an emitter. Each has a number, its place in the flattened list, and
 /// keeps an `EmitterState` under it.
 ///
 /// ```
@@ -370,18 +371,20 @@ impl Emit for () {
     fn emit(&self, _: Time, _: Time, _: &mut Births<'_>) {}
 }
 
-impl<T: Emit + ?Sized> Emit for &T {
-    fn count(&self) -> usize {
-        (**self).count()
-    }
-    fn reach(&self) -> f32 {
-        (**self).reach()
-    }
-    fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
-        (**self).extremes(visit)
-    }
-    fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
-        (**self).emit(from, to, births);
+stands_for! {
+    Emit {
+        fn count(&self) -> usize {
+            (**self).count()
+        }
+        fn reach(&self) -> f32 {
+            (**self).reach()
+        }
+        fn extremes(&self, visit: &mut dyn FnMut(&Particle)) -> bool {
+            (**self).extremes(visit)
+        }
+        fn emit(&self, from: Time, to: Time, births: &mut Births<'_>) {
+            (**self).emit(from, to, births);
+        }
     }
 }
 
@@ -429,6 +432,7 @@ macro_rules! lists {
 lists! {
     [T: Emit, const N: usize] [T; N];
     [T: Emit, const N: usize] heapless::Vec<T, N>;
+    [T: Emit] Option<T>;
     #[cfg(feature = "alloc")]
     [T: Emit] alloc::vec::Vec<T>;
 }

@@ -1,12 +1,13 @@
 //! How air moves: a velocity at every place and instant.
 
+use crate::composed::stands_for;
 use crate::math::{sin_cos_turns, unit};
 use crate::time::Time;
 use glam::Vec3;
 
 /// A field of velocities.
 ///
-/// A tuple, slice or reference of flows is a flow: their sum.
+/// A tuple, slice, reference or box of flows is a flow: their sum.
 pub trait Flow: Sync {
     /// The velocity at a place and an instant \[m/s\]. It has to be the same bits on every target: see
     /// [`math`](crate::math).
@@ -99,12 +100,14 @@ impl Flow for () {
     }
 }
 
-impl<T: Flow + ?Sized> Flow for &T {
-    fn velocity(&self, place: Vec3, time: Time) -> Vec3 {
-        (**self).velocity(place, time)
-    }
-    fn everywhere(&self, time: Time) -> Option<Vec3> {
-        (**self).everywhere(time)
+stands_for! {
+    Flow {
+        fn velocity(&self, place: Vec3, time: Time) -> Vec3 {
+            (**self).velocity(place, time)
+        }
+        fn everywhere(&self, time: Time) -> Option<Vec3> {
+            (**self).everywhere(time)
+        }
     }
 }
 

@@ -65,14 +65,14 @@ pub use viscosity::Viscosity;
 pub use watched::Watched;
 pub use wind::Wind;
 
-use crate::composed::{composed, each};
+use crate::composed::{composed, each, stands_for};
 use crate::custom::CustomColumnsMut;
 use core::ops::Range;
 use glam::Vec3;
 
 /// A force field or an interaction.
 ///
-/// A tuple, slice or reference of forces is a force: their sum.
+/// A tuple, slice, option, reference or box of forces is a force: their sum.
 ///
 /// ```
 /// use core::ops::Range;
@@ -380,8 +380,10 @@ macro_rules! same_as {
 
 use same_as;
 
-impl<T: Force + ?Sized> Force for &T {
-    same_as!(this => **this);
+stands_for! {
+    Force {
+        same_as!(this => **this);
+    }
 }
 
 composed!(Force by sum_of);

@@ -5,6 +5,7 @@ use super::near::wide_between;
 use super::spring::{BROKEN, place_in};
 use super::{Force, Held, Perturbation, Spring, Springs, State};
 use crate::collide::LeadCode;
+use crate::composed::stands_for;
 use crate::math::{length, max};
 use core::ops::Range;
 use glam::Vec3;
@@ -31,12 +32,14 @@ impl SpringList for () {
     }
 }
 
-impl<T: SpringList + ?Sized> SpringList for &T {
-    fn list(&self) -> &[Spring] {
-        (**self).list()
-    }
-    fn code(&self) -> Option<SpringCode> {
-        (**self).code()
+stands_for! {
+    SpringList {
+        fn list(&self) -> &[Spring] {
+            (**self).list()
+        }
+        fn code(&self) -> Option<SpringCode> {
+            (**self).code()
+        }
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::facts::ARE_KEPT;
 use super::{Grid, Kd, Room, SpatialIndex, Structure};
+use crate::composed::stands_for;
 use glam::Vec3;
 
-/// Makes an index of a step's particles in memory of the system.
+/// Makes an index of a step's particles in memory of the system. A reference or box of a choice is one.
 ///
 /// `()` makes none, and forces look at all pairs; a [`Structure`] is chosen by name; [`InGrid`] and [`InKd`] by type, so that
 /// firmware carries no other. In [`Periodic`] any of them finds neighbours through the sides of a room.
@@ -68,6 +69,33 @@ pub trait IndexChoice: Sync {
     /// Brings those who have left the room at one side in at the other: at the end of each step.
     fn wrap(&self, position: &mut [Vec3]) {
         let _ = position;
+    }
+}
+
+stands_for! {
+    IndexChoice {
+        fn columns(&self) -> usize {
+            (**self).columns()
+        }
+        fn with_index(
+            &self,
+            memory: &mut [u32],
+            points: &[Vec3],
+            reach: f32,
+            room: Option<&Room>,
+            then: &mut dyn FnMut(Option<&dyn SpatialIndex>),
+        ) {
+            (**self).with_index(memory, points, reach, room, then);
+        }
+        fn reopen(&self, memory: &mut [u32], room: Option<&Room>, then: &mut dyn FnMut(&mut dyn SpatialIndex)) {
+            (**self).reopen(memory, room, then);
+        }
+        fn room(&self) -> Option<&Room> {
+            (**self).room()
+        }
+        fn wrap(&self, position: &mut [Vec3]) {
+            (**self).wrap(position);
+        }
     }
 }
 

@@ -36,6 +36,7 @@ pub use named::{Method, Tuned, Tuning, UnknownMethod};
 pub use rk4::Rk4;
 pub use verlet::Verlet;
 
+use crate::composed::stands_for;
 use crate::force::{Finder, Force, Perturbation, SpringForce, State};
 use crate::math::{largest, max};
 use crate::report::Effort;
@@ -254,24 +255,26 @@ impl<'a> Work<'a> {
     }
 }
 
-impl<T: Integrator + ?Sized> Integrator for &T {
-    fn columns(&self) -> usize {
-        (**self).columns()
-    }
-    fn needs_start(&self) -> bool {
-        (**self).needs_start()
-    }
-    fn is_local(&self) -> bool {
-        (**self).is_local()
-    }
-    fn drift(&self) -> Option<Drift> {
-        (**self).drift()
-    }
-    fn lead(&self) -> f32 {
-        (**self).lead()
-    }
-    fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
-        (**self).advance(motion, time, step, world);
+stands_for! {
+    Integrator {
+        fn columns(&self) -> usize {
+            (**self).columns()
+        }
+        fn needs_start(&self) -> bool {
+            (**self).needs_start()
+        }
+        fn is_local(&self) -> bool {
+            (**self).is_local()
+        }
+        fn drift(&self) -> Option<Drift> {
+            (**self).drift()
+        }
+        fn lead(&self) -> f32 {
+            (**self).lead()
+        }
+        fn advance(&self, motion: Motion<'_>, time: Time, step: Time, world: &mut dyn Dynamics) {
+            (**self).advance(motion, time, step, world);
+        }
     }
 }
 

@@ -15,7 +15,7 @@ pub use chance::Chance;
 pub use dense::Dense;
 pub use kind::ReaperKind;
 
-use crate::composed::{composed, each};
+use crate::composed::{composed, each, stands_for};
 use crate::force::State;
 use crate::index::{Neighbours, StateIndex};
 use crate::math::max;
@@ -29,7 +29,7 @@ pub(crate) const CHUNK: usize = 64;
 
 /// A rule by which particles die.
 ///
-/// A tuple, slice or reference of reapers is a reaper: whoever any of them takes goes.
+/// A tuple, slice, option, reference or box of reapers is a reaper: whoever any of them takes goes.
 ///
 /// ```
 /// use core::ops::Range;
@@ -211,8 +211,10 @@ macro_rules! same_as {
 
 use same_as;
 
-impl<T: Reaper + ?Sized> Reaper for &T {
-    same_as!(this => **this);
+stands_for! {
+    Reaper {
+        same_as!(this => **this);
+    }
 }
 
 composed!(Reaper by any_of);

@@ -21,6 +21,14 @@ use crate::shape::Collider;
 /// use pointmass::{Drag, Gravity, Scene};
 /// let scene = Scene { forces: &(Gravity::EARTH, Drag {}), ..Scene::EMPTY };
 /// ```
+///
+/// Arrays, vectors, tuples, options and boxes are lent as they are. A slice is lent twice, since how long it is does not fit into a reference to a trait:
+///
+/// ```
+/// use pointmass::{Distance, Scene};
+/// let rods: &[Distance] = &[Distance::rod([0, 1], 0.1), Distance::rod([1, 2], 0.1)];
+/// let scene = Scene { constraints: &&rods[1..], ..Scene::EMPTY };
+/// ```
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// The particles it begins with.

@@ -3,13 +3,14 @@
 use super::crease::Leans;
 use super::hit::earlier;
 use super::{Aabb, Affine, Clearance, Contact, Crease, Face, Facing, Hit, Hulls, Marks, Ride, Segment, Solid};
+use crate::composed::stands_for;
 use crate::math::{along, dot, minus};
 use crate::time::Time;
 use glam::Vec3;
 
 /// Something that a moving point or ball can run into.
 ///
-/// A tuple, slice or reference of colliders is a collider: the earliest hit is its hit, of several at once that of the
+/// A tuple, slice, option, reference or box of colliders is a collider: the earliest hit is its hit, of several at once that of the
 /// collider listed first.
 ///
 /// ```
@@ -243,49 +244,51 @@ impl Collider for () {
     }
 }
 
-impl<T: Collider + ?Sized> Collider for &T {
-    fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        (**self).first_hit(segment)
-    }
-    fn may_touch(&self, bounds: &Aabb) -> bool {
-        (**self).may_touch(bounds)
-    }
-    fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
-        (**self).mark_near(hulls, marks);
-    }
-    fn facing(&self, bounds: &Aabb) -> Facing {
-        (**self).facing(bounds)
-    }
-    fn many(&self) -> Option<&dyn Many> {
-        (**self).many()
-    }
-    #[cfg(feature = "alloc")]
-    fn solid(&self) -> Option<Solid> {
-        (**self).solid()
-    }
-    fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        (**self).contacts(center, reach, at, visit);
-    }
-    fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
-        (**self).contacts_of(faces, center, reach, at, visit);
-    }
-    fn crease(&self, center: Vec3, reach: f32, at: Time, acceleration: Option<Vec3>) -> Option<Crease> {
-        (**self).crease(center, reach, at, acceleration)
-    }
-    fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
-        (**self).carry(point, radius, during)
-    }
-    fn carry_on(&self, way: &Segment) -> Option<Vec3> {
-        (**self).carry_on(way)
-    }
-    fn ride(&self, seat: &Segment) -> Option<Ride> {
-        (**self).ride(seat)
-    }
-    fn is_empty(&self) -> bool {
-        (**self).is_empty()
-    }
-    fn moves(&self) -> bool {
-        (**self).moves()
+stands_for! {
+    Collider {
+        fn first_hit(&self, segment: &Segment) -> Option<Hit> {
+            (**self).first_hit(segment)
+        }
+        fn may_touch(&self, bounds: &Aabb) -> bool {
+            (**self).may_touch(bounds)
+        }
+        fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
+            (**self).mark_near(hulls, marks);
+        }
+        fn facing(&self, bounds: &Aabb) -> Facing {
+            (**self).facing(bounds)
+        }
+        fn many(&self) -> Option<&dyn Many> {
+            (**self).many()
+        }
+        #[cfg(feature = "alloc")]
+        fn solid(&self) -> Option<Solid> {
+            (**self).solid()
+        }
+        fn contacts(&self, center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+            (**self).contacts(center, reach, at, visit);
+        }
+        fn contacts_of(&self, faces: &[u32], center: Vec3, reach: f32, at: Time, visit: &mut dyn FnMut(&Contact)) {
+            (**self).contacts_of(faces, center, reach, at, visit);
+        }
+        fn crease(&self, center: Vec3, reach: f32, at: Time, acceleration: Option<Vec3>) -> Option<Crease> {
+            (**self).crease(center, reach, at, acceleration)
+        }
+        fn carry(&self, point: Vec3, radius: f32, during: [Time; 2]) -> Vec3 {
+            (**self).carry(point, radius, during)
+        }
+        fn carry_on(&self, way: &Segment) -> Option<Vec3> {
+            (**self).carry_on(way)
+        }
+        fn ride(&self, seat: &Segment) -> Option<Ride> {
+            (**self).ride(seat)
+        }
+        fn is_empty(&self) -> bool {
+            (**self).is_empty()
+        }
+        fn moves(&self) -> bool {
+            (**self).moves()
+        }
     }
 }
 
@@ -429,6 +432,7 @@ macro_rules! lists {
 lists! {
     [T: Collider, const N: usize] [T; N];
     [T: Collider, const N: usize] heapless::Vec<T, N>;
+    [T: Collider] Option<T>;
     #[cfg(feature = "alloc")]
     [T: Collider] alloc::vec::Vec<T>;
 }
