@@ -134,7 +134,57 @@ macro_rules! storage {
         /// Memory in the value itself: a `static`, a field, or a small stack variable.
         ///
         /// `COLUMNS` is how many `Vec3` the scene needs to work with for each particle, `KEPT` how many words it keeps of each:
-        /// see [`Scene::columns`](crate::Scene::columns) and [`Scene::kept`](crate::Scene::kept).
+        /// see [`Scene::columns`](crate::Scene::columns) and [`Scene::kept`](crate::Scene::kept). Scenes ask for so much, with gravity, a plane, and as many
+        /// particles as they begin with or bear:
+        ///
+        /// | Scene | `PARTICLES` | `EMITTERS` | `COLUMNS` | `KEPT` |
+        /// |---|---|---|---|---|
+        /// | A fountain of an [`Emitter`](crate::Emitter) | 64 | 1 | 3 | 0 |
+        /// | A [`Rope`](crate::Rope) of 8 links | 9 | 0 | 25 | 4 |
+        /// | The same by [`Rk4`](crate::Rk4) | 9 | 0 | 27 | 7 |
+        /// | A die, of [`RigidBodies`](crate::constrain::RigidBodies) | 8 | 0 | 28; hosts 182 | 75 |
+        /// | Both | 17 | 0 | 22; hosts 94 | 37 |
+        /// | A flag of 6 × 4 cells, a [`Shell`](crate::Shell) | 35 | 0 | 66 | 97 |
+        ///
+        /// These do not add up: parts work in the same columns by turns, and what they ask for themselves is divided among all particles. What a scene needs
+        /// in all [`Scene::size_for`](crate::Scene::size_for) says, and [`start`](crate::System::start) where there is less; hosts, which solve for many
+        /// touching bodies side by side, work in more than chips.
+        ///
+        /// ```
+        /// # use pointmass::constrain::{Hinge, RigidBodies, RigidBox, ShellParams};
+        /// # use pointmass::shape::{Disc, Plane};
+        /// # use pointmass::{Drag, Emitter, Gravity, Rk4, Rope, Sheet, Shell, Size, Vec3};
+        /// use pointmass::{Inline, Scene, System};
+        ///
+        /// # let ground = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        /// # let forces = (Gravity::EARTH, Drag {});
+        /// # let world = Scene { forces: &forces, colliders: &ground, ..Scene::EMPTY };
+        /// # let size = |particles, emitters, columns, kept| Size { particles, emitters, springs: 0, columns, kept };
+        /// # let source = Emitter::new(Disc { center: Vec3::Y, normal: Vec3::Y, radius: 0.1 }, 100.0);
+        /// # let fountain = Scene { emitters: &source, ..world };
+        /// # assert_eq!(fountain.size_for(64), size(64, 1, 3, 0));
+        /// # let rope = Rope::rigid([0, 1, 2, 3, 4, 5, 6, 7, 8], [0.1]);
+        /// # let hangs = Scene { constraints: &rope, ..world };
+        /// # assert_eq!(hangs.size_for(9), size(9, 0, 25, 4));
+        /// # assert_eq!(Scene { integrator: &Rk4, ..hangs }.size_for(9), size(9, 0, 27, 7));
+        /// # let die = RigidBodies::boxes([RigidBox::new(Vec3::splat(0.01), Vec3::Y, 9)]);
+        /// # assert!([28, 182].map(|columns| size(8, 0, columns, 75)).contains(&Scene { constraints: &die, ..world }.size_for(8)));
+        /// # let both = (rope, die);
+        /// # assert!([22, 94].map(|columns| size(17, 0, columns, 37)).contains(&Scene { constraints: &both, ..world }.size_for(17)));
+        /// # let flag = Sheet { corner: Vec3::Y, sides: [Vec3::X, Vec3::NEG_Y * 0.6], cells: [6, 4] };
+        /// # let shell = Shell {
+        /// #     particles: (0..35).collect::<Vec<u32>>(),
+        /// #     triangles: flag.triangles().collect::<Vec<_>>(),
+        /// #     hinges: flag.hinges().collect::<Vec<Hinge>>(),
+        /// #     warp: Vec3::X,
+        /// #     params: ShellParams::isotropic(1e3, 0.3, 0.1),
+        /// # };
+        /// # assert_eq!(Scene { constraints: &shell, ..world }.size_for(35), size(35, 0, 66, 97));
+        /// let mut system = System::with(Inline::<64, 1, 0, 3>::new());
+        /// assert!(system.start(&fountain, 1).is_ok());
+        /// let mut less = System::with(Inline::<64, 1, 0, 2>::new());
+        /// assert_eq!(less.start(&fountain, 1).map_err(|lack| lack.need.columns), Err(3));
+        /// ```
         #[derive(Clone, Debug)]
         pub struct Inline<
             const PARTICLES: usize,
