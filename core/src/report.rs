@@ -140,9 +140,8 @@ pub struct Caps {
     /// Pieces of shells which walls press that stayed where they were in a sub-step, but for what walls let them do along these: wherever else they went,
     /// they had more energy than there was. No part of the system's hash.
     pub crushed: u64,
-    /// Parts of constraints that do nothing as they begin, each once: triangles and folds of shells, triangles of limits of strain and edges of strands that
-    /// have no extent, or no place; particles that a constraint names and that there are not; and constraints with a number that cannot be
-    /// used, as their `fault()` says which. What loses a particle later does nothing from then on, which [`Report::died`] tells. No part of the system's hash.
+    /// Triangles and folds of shells, triangles of limits of strain and edges of strands that have no extent where they begin, or no place, so that they
+    /// do nothing: each once, as they begin. No part of the system's hash.
     pub degenerate: u64,
     /// Births that should lie inside a shape, for which no place was found there, so that they lie on its surface: it is too thin, or open. No part of the
     /// system's hash.

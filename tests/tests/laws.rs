@@ -40,7 +40,6 @@ mod implicit;
 mod indices;
 mod integrators;
 mod isotropic_sheets;
-mod lacking;
 mod laden_sheets;
 mod ledger;
 mod ledges;

@@ -155,7 +155,7 @@ impl Summary {
             ("solutions of shells without graphs", graphs),
             ("solutions of shells that may have left edges too long", edges),
             ("pieces of shells that walls crush and that stayed where they were", crushed),
-            ("parts of constraints without extent, particles or sound numbers, which do nothing", degenerate),
+            ("triangles, folds and edges without extent, which do nothing", degenerate),
             ("births on the surface of what they should lie in", outside),
             ("steps that did not fit", insufficient_memory),
         ];

@@ -80,7 +80,6 @@ impl<P: AsRef<[u32]> + Sync, M: Script> Constraint for Attach<P, M> {
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         if share.claim(*b"atta", &[self.particles.as_ref().len()]) {
             self.learn(bodies, share.kept.fixed);
-            bodies.count_idle(self.particles.as_ref().iter().copied(), false);
         }
         let (end, h) = (self.motion.frame(bodies.substep.during[1]), bodies.substep.seconds());
         if h > 0.0 {

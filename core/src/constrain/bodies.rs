@@ -242,12 +242,6 @@ impl Bodies<'_> {
         are_bound(self.bound, row, other)
     }
 
-    /// Counts as a constraint begins what of it can do nothing: each particle that it names and that there is not, and whether it has a fault.
-    pub(super) fn count_idle(&mut self, particles: impl IntoIterator<Item = u32>, has_fault: bool) {
-        let lacking = particles.into_iter().filter(|&number| self.row_of_start(number).is_none()).count();
-        self.report.caps.degenerate += lacking as u64 + u64::from(has_fault);
-    }
-
     /// Tells whether it has been said of the particle in a row that it is kept from a surface, in this sub-step.
     pub(crate) fn is_touching(&self, row: usize) -> bool {
         self.marks[row] & TOUCHING != 0

@@ -63,9 +63,6 @@ impl Distance {
     }
 
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
@@ -262,9 +259,7 @@ impl Constraint for Distance {
     /// by methods that move it by half of that. So much it lets go, to take it with the rest, which alone tells what the links of a chain bear
     /// together. A jolt is no steady force: of the last two the lesser counts.
     fn begin(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        if share.claim(*b"dist", &[]) {
-            bodies.count_idle(self.ends, self.fault().is_some());
-        }
+        share.claim(*b"dist", &[]);
         let [_, last, before, left @ ..] = &mut *share.kept.fixed else { return };
         let (h, [last, before]) = (bodies.substep.seconds(), [*last, *before].map(f32::from_bits));
         let steady = max(min(last, before), 0.0) + min(max(last, before), 0.0);

@@ -73,10 +73,6 @@ use crate::observe::Phase;
 /// may be off the constraint, and has the velocity that they leave it, until the next. (Shells and contacts of sheets meet the scenery by
 /// themselves.)
 ///
-/// A step refuses none. What names a particle that there is not, or holds a number that cannot be used, does nothing in that part, and is counted as it
-/// begins ([`Caps::degenerate`](crate::Caps::degenerate)); which number it is, the `fault()` of the engine's own tells whoever asks before. What has lost a
-/// particle by its death does nothing from then on.
-///
 /// Whatever goes to the nearest place that satisfies it takes energy out of the motion, the less the shorter the sub-steps. To keep it, go
 /// back along the direction of the sub-step's beginning ([`Bodies::before`]), take what violates the constraint out of velocities in
 /// [`settle`](Constraint::settle), and use `Verlet` (RATTLE); the example `own_constraint` does so.

@@ -140,21 +140,14 @@ impl<L> RigidBodies<L> {
 
 impl<L: AsRef<[RigidBox]>, H: HullList> RigidBodies<L, H> {
     /// The first number of any body that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
-        let pieces = |body: &RigidBox| {
-            let first = body.hull.map_or(0, usize::from);
-            first..first + body.hull.map_or(0, |_| usize::from(body.pieces))
-        };
-        let hull = |number: usize| match self.hulls.hull(number) {
-            Some(hull) => hull.fault(),
-            None => Some(("hull", "has to be the number of one of hulls, as those of all pieces")),
+        let hull = |body: &RigidBox| {
+            let first = usize::from(body.hull?);
+            (first..first + usize::from(body.pieces)).find_map(|number| self.hulls.hull(number)?.fault())
         };
         let boxes = self.boxes.as_ref();
-        boxes.iter().find_map(RigidBox::fault).or_else(|| boxes.iter().flat_map(pieces).find_map(hull))
+        boxes.iter().find_map(RigidBox::fault).or_else(|| boxes.iter().find_map(hull))
     }
 
     /// The numbers of them all.
@@ -273,10 +266,7 @@ impl<L: AsRef<[RigidBox]> + Sync, H: HullList> Constraint for RigidBodies<L, H> 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         let Sizes { bodies: count, particles, balls, more } = self.sizes();
         let sizes = [count, particles, balls, more];
-        if share.claim(*b"rigi", &sizes[..if more > 0 { 4 } else { 3 }]) {
-            let members = |of: &RigidBox| (of.first..=u32::MAX).take(of.count as usize);
-            bodies.count_idle(self.boxes.as_ref().iter().flat_map(members), self.fault().is_some());
-        }
+        share.claim(*b"rigi", &sizes[..if more > 0 { 4 } else { 3 }]);
         let Some(mut kept) = Kept::of(share.kept.fixed, self.sizes()) else { return };
         let mut is_news = false;
         if bodies.substep.number == 0 {

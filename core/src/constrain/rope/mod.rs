@@ -121,9 +121,6 @@ impl<P, L> Rope<P, L> {
 
 impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
@@ -138,11 +135,6 @@ impl<P: AsRef<[u32]>, L: AsRef<[f32]>> Rope<P, L> {
             (!not_negative(self.damping), "damping", "must not be below zero, in N s/m"),
         ];
         faults.into_iter().find(|&(wrong, ..)| wrong).map(|(_, name, message)| (name, message))
-    }
-
-    /// Counts as it begins what of it can do nothing.
-    fn count_idle(&self, bodies: &mut Bodies<'_>) {
-        bodies.count_idle(self.particles.as_ref().iter().copied(), self.fault().is_some());
     }
 
     /// The number of links.
@@ -215,9 +207,7 @@ impl<P: AsRef<[u32]> + Sync, L: AsRef<[f32]> + Sync> Constraint for Rope<P, L> {
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        if share.claim(*b"rope", &[]) {
-            self.count_idle(bodies);
-        }
+        share.claim(*b"rope", &[]);
         bodies.join_all(self.particles.as_ref());
     }
 

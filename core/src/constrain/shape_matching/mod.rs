@@ -97,9 +97,6 @@ impl<P> ShapeMatching<P> {
 
 impl<P: AsRef<[u32]>> ShapeMatching<P> {
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
@@ -326,7 +323,6 @@ impl<P: AsRef<[u32]> + Sync> Constraint for ShapeMatching<P> {
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
         if share.claim(*b"shap", &[self.particles.as_ref().len()]) {
             self.learn(bodies, share.kept.fixed);
-            bodies.count_idle(self.particles.as_ref().iter().copied(), self.fault().is_some());
         }
     }
 

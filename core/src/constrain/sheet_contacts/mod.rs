@@ -103,9 +103,6 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, W: AsRef<[f32]>> SheetContacts<P, T,
     }
 
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let [particles, triangles] = self.counts();
@@ -136,9 +133,7 @@ where
     }
 
     fn prepare(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {
-        if share.claim(*b"shee", &self.counts()) {
-            bodies.count_idle(self.particles.as_ref().iter().copied(), self.fault().is_some());
-        }
+        share.claim(*b"shee", &self.counts());
         let Some(mut rest) = Rest::of(share.kept.fixed, self.counts()) else { return };
         if !rest.is_known() && !self.is_empty() && self.fault().is_none() {
             let (particles, triangles) = (self.particles.as_ref(), self.triangles.as_ref());

@@ -142,9 +142,6 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
     }
 
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let [particles, triangles, _] = self.counts();
@@ -245,7 +242,6 @@ impl<P: AsRef<[u32]>, T: AsRef<[[u32; 3]]>, H: AsRef<[Hinge]>> Shell<P, T, H> {
             degenerate += u64::from(!bend.acts());
         }
         bodies.report.caps.degenerate += degenerate;
-        bodies.count_idle(self.particles.as_ref().iter().copied(), self.fault().is_some());
     }
 }
 

@@ -33,9 +33,6 @@ pub struct StrainLimitParams {
 
 impl StrainLimitParams {
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         const RANGE: &str = "has to be the least and the greatest length as shares of that at rest, with 1 between them, such as [0.9, 1.02]";
@@ -309,16 +306,13 @@ impl<T: AsRef<[[u32; 3]]> + Sync> Constraint for StrainLimits<T> {
             return;
         }
         let cells = self.cells(share.kept.fixed);
-        let mut degenerate = 0;
         for (number, cell) in cells.iter_mut().enumerate() {
             if let Some([a, b, c]) = self.rows(bodies, number) {
                 let x = &bodies.position;
                 *cell = Cell::at_rest([x[b] - x[a], x[c] - x[a]], self.warp);
+                bodies.report.caps.degenerate += u64::from(cell.area == 0.0);
             }
-            degenerate += u64::from(cell.area == 0.0);
         }
-        bodies.report.caps.degenerate += degenerate;
-        bodies.count_idle([], self.fault().is_some());
     }
 
     fn project(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) {

@@ -130,9 +130,6 @@ impl<P, L> Strands<P, L> {
 
 impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let faults = [
@@ -203,7 +200,6 @@ impl<P: AsRef<[u32]>, L: AsRef<[u32]>> Strands<P, L> {
             }
         }
         bodies.report.caps.degenerate += degenerate;
-        bodies.count_idle(self.particles.as_ref().iter().copied(), self.fault().is_some());
     }
 
     /// The row of a particle by its place in the list, if it lives and is somewhere.

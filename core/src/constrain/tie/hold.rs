@@ -15,15 +15,11 @@ use glam::Vec3;
 /// Rounds at the most where there is an offset, whose direction is not linear in the places.
 const ROUNDS: u32 = 6;
 impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
-    /// Learns where the place is, if that is not known; tells whether it begins.
-    pub(super) fn know(&self, bodies: &mut Bodies<'_>, share: &mut Share<'_>) -> bool {
-        let begins = share.claim(*b"tie ", &[self.to.as_ref().len(), self.given().len()]);
-        if begins {
+    /// Learns where the place is, if that is not known.
+    pub(super) fn know(&self, bodies: &Bodies<'_>, share: &mut Share<'_>) {
+        if share.claim(*b"tie ", &[self.to.as_ref().len(), self.given().len()]) {
             self.learn(bodies, share.kept.fixed);
-            let particles = self.to.as_ref().iter().copied().chain([self.particle]);
-            bodies.count_idle(particles, self.fault().is_some());
         }
-        begins
     }
 
     /// Brings the particle to its place, or so near that the compliance is met.

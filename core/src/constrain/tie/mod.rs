@@ -85,9 +85,6 @@ impl<T> Tie<T> {
 
 impl<T: AsRef<[u32]>, W: AsRef<[f32]>> Tie<T, W> {
     /// The first of its numbers that cannot be used, and what it has to be.
-    ///
-    /// A step does not refuse it: it does what can be done without that number, mostly nothing, and counts it once, as the constraint begins
-    /// ([`Caps::degenerate`](crate::Caps::degenerate)). Scene files are refused.
     #[must_use]
     pub fn fault(&self) -> Option<(&'static str, &'static str)> {
         let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);

@@ -99,15 +99,9 @@ where
         if !self.is_tied() {
             return self.rope.prepare(bodies, share);
         }
-        let (mut parts, mut begins) = (share.parts(), false);
+        let mut parts = share.parts();
         for tie in self.ends.iter().flatten() {
-            begins |= tie.know(bodies, &mut parts.next(tie.demand()));
-        }
-        if begins {
-            // Ties have counted themselves.
-            let ties_have = self.ends.iter().flatten().any(|tie| tie.fault().is_some());
-            let has_fault = !ties_have && self.fault_by(|_| false).is_some();
-            bodies.count_idle(self.rope.particles.as_ref().iter().copied(), has_fault);
+            tie.know(bodies, &mut parts.next(tie.demand()));
         }
         bodies.join_all(self.rope.particles.as_ref());
     }
