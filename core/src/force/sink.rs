@@ -1,17 +1,13 @@
 //! A sink: it pulls, and what touches it is gone.
 
 use super::{Force, State};
-use crate::math::{max, sqrt};
+use crate::math::sqrt;
 use crate::shape::{Aabb, Collider, Hit, Hulls, Marks, Segment, Shape, Surface};
 use core::ops::Range;
 use glam::Vec3;
 
-/// How near a path must come to touch a sink \[m\]: as near as chords follow paths. Pulls lead to the nearest place, which often is a rim, an edge or a
-/// corner, and rounding alone says on which side of that a point goes by.
-const TOUCH: f32 = 1e-4;
-
 /// A surface that pulls every particle toward its nearest point, whatever the particle's mass, and that removes the
-/// particles that touch it, or come within 0.1 mm of it: f = intensity / (ca + la D + qa D²) d⃗ / D, d⃗ being the way to that point and D² = d² + s² with
+/// particles that touch it: f = intensity / (ca + la D + qa D²) d⃗ / D, d⃗ being the way to that point and D² = d² + s² with
 /// the softening s.
 ///
 /// It is left out of [`Force::add_jacobian`]: the pull grows toward the surface, which drives apart what is
@@ -77,16 +73,15 @@ impl<M: Collider> Collider for Sink<M> {
     }
 
     fn first_hit(&self, segment: &Segment) -> Option<Hit> {
-        let wide = Segment { radius: max(TOUCH, segment.radius), ..*segment };
-        self.shape.first_hit(segment).or_else(|| self.shape.first_hit(&wide))
+        self.shape.first_hit(segment)
     }
 
     fn may_touch(&self, bounds: &Aabb) -> bool {
-        self.shape.may_touch(&bounds.grown(TOUCH))
+        self.shape.may_touch(bounds)
     }
 
     fn mark_near(&self, hulls: &Hulls, marks: &mut Marks) {
-        self.shape.mark_near(&hulls.grown(TOUCH), marks);
+        self.shape.mark_near(hulls, marks);
     }
 }
 

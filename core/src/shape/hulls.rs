@@ -60,11 +60,6 @@ impl Hulls {
         Self { min, max, room: radius + 16.0 * f32::EPSILON * largest, largest }
     }
 
-    /// The boxes that reach farther by so much on all sides \[m\].
-    pub(crate) fn grown(&self, by: f32) -> Self {
-        Self { room: self.room + by, ..self.clone() }
-    }
-
     /// One of them; what is missing is at the origin.
     #[must_use]
     pub fn get(&self, i: usize) -> Aabb {

@@ -6,7 +6,6 @@ mod files;
 mod laws;
 mod near;
 mod pressure;
-mod sinks;
 mod slopes;
 mod sums;
 mod wind;
