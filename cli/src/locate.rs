@@ -27,7 +27,7 @@ pub(crate) fn with_path(error: SceneError, text: &str) -> SceneError {
     if path.is_empty() { error } else { SceneError { message: format!("{path}: {}", error.message), ..error } }
 }
 
-/// How many bytes of a text there are up to a place that is told as `line:column`.
+/// Bytes of a text up to a place that is told as `line:column`.
 fn end_of(text: &str, place: &str) -> Option<usize> {
     let (line, column) = place.split_once(':')?;
     let (line, column) = (line.parse::<usize>().ok()?, column.parse::<usize>().ok()?);

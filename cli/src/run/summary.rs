@@ -92,9 +92,9 @@ impl Summary {
         }
     }
 
-    /// How many steps of which length there were, in words.
+    /// The number of steps and their lengths, in words.
     fn lengths(&self) -> String {
-        /// What rounding makes of a last step \[s\].
+        /// The share of a last step that rounding makes up.
         const ROUNDING: f64 = 1e-6;
         let (steps, dt, last) = (self.steps, self.dt, self.last);
         let is_whole = (dt - last).abs() <= ROUNDING * dt;

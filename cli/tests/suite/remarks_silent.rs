@@ -1,4 +1,4 @@
-//! What does nothing, or not what it seems to say, told by name; and nothing told where it is meant.
+//! Remarks on what does nothing, or not what it seems to say; and none where it is meant.
 
 use crate::tool::Folder;
 

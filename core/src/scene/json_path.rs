@@ -14,7 +14,7 @@ impl SceneFile {
     }
 }
 
-/// What a place in a JSON text is in.
+/// A list or an object that a place in a JSON text is in.
 enum Level<'t> {
     /// An entry of a list, by its number.
     List(usize),

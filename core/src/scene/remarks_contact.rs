@@ -7,7 +7,7 @@ use crate::particles::Particle;
 use alloc::format;
 use alloc::string::String;
 
-/// What two may differ by of the share of a speed that is given back, without a remark.
+/// The difference of two shares of a speed that are given back, up to which there is no remark.
 const ALIKE: f32 = 0.05;
 
 impl SceneFile {

@@ -162,7 +162,7 @@ impl SceneFile {
     }
 }
 
-/// What helps where a remark asks for so many sub-steps.
+/// Words for what helps where a remark asks for so many sub-steps.
 pub(super) fn enough(needed: u32) -> String {
     match needed {
         ..=MOST_SUBSTEPS => format!("run.substeps of {needed} are enough"),

@@ -23,7 +23,7 @@ const HIGH: f32 = 0.25;
 const PARTS: usize = 16;
 /// Triangles of a mesh that are one of them, at the most.
 const FACES: usize = 12;
-/// What is so many times as long as it is thick is looked at in parts where it lies on much, so many at the most along each side.
+/// Bodies so many times as long as they are thick are looked at in parts where they lie on much, so many at the most along each side.
 const SLENDER: f32 = 4.0;
 const SPANS: f32 = 8.0;
 /// The cosine of the angle within which two faces are one.
