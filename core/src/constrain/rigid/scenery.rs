@@ -301,7 +301,7 @@ impl Visit<'_> {
         let over = Over { form: &self.form, body, colliders, at, faces: &[] };
         let (mut parts, mut left_out) = (heapless::Vec::<Part, PARTS>::new(), 0);
         colliders.contacts(middle, length(half) + self.reach, at, &mut |contact| {
-            if over.gap(contact) > self.reach || self.is_stood_on(bodies, contact) {
+            if over.gap(contact) > self.reach || self.is_stood_on(contact) {
                 return;
             }
             if let Some(part) = parts.iter_mut().find(|part| part.is_at(contact, 0.1 * self.level())) {
@@ -361,10 +361,9 @@ impl Visit<'_> {
         Over { form: &self.form, body, colliders, at, faces: &faces }.closest(*end, self.reach)
     }
 
-    /// Tells whether corners do all that a flat face of the scenery would, or a seam in it: who stands on four hangs over nothing.
-    fn is_stood_on(&self, bodies: &Bodies<'_>, contact: &Contact) -> bool {
-        let mut level = self.slots.iter().filter(|slot| slot.count > 0 && self.is_level(slot, contact)).peekable();
-        level.peek().is_some() && (level.any(|slot| slot.count as usize == POINTS) || self.is_seam(bodies, contact))
+    /// Tells whether corners do all that a flat face of the scenery would: who stands on four hangs over nothing.
+    fn is_stood_on(&self, contact: &Contact) -> bool {
+        self.slots.iter().any(|slot| slot.count as usize == POINTS && self.is_level(slot, contact))
     }
 
     /// Tells whether a place of the body is between points on a face.
