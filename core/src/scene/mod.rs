@@ -58,20 +58,6 @@ mod read;
 mod references;
 #[cfg(feature = "alloc")]
 mod remarks;
-#[cfg(feature = "alloc")]
-mod remarks_births;
-#[cfg(feature = "alloc")]
-mod remarks_contact;
-#[cfg(feature = "alloc")]
-mod remarks_forces;
-#[cfg(feature = "alloc")]
-mod remarks_idle;
-#[cfg(feature = "alloc")]
-mod remarks_load;
-#[cfg(feature = "alloc")]
-mod remarks_look;
-#[cfg(feature = "alloc")]
-mod remarks_place;
 mod response;
 #[cfg(feature = "alloc")]
 mod rigging;

@@ -1,6 +1,6 @@
 //! Bodies that hang from others, as a file declares them: how fast ropes turn them to and fro, and how far they let sheets sink.
 
-use super::remarks_load::enough;
+use super::remarks::load::enough;
 use super::{Body, Boxes, Cord, SceneFile};
 use crate::constrain::{root, unite};
 use crate::math::{length, max, sqrt};

@@ -1,5 +1,13 @@
 //! Remarks on a declared scene: things that it can say, but hardly means.
 
+mod births;
+mod contact;
+mod forces;
+mod idle;
+pub(super) mod load;
+mod look;
+mod place;
+
 use super::{Boxes, Cloth, Cord, Item, PeriodicRoom, Response, Run, SceneFile, SoftBody, Tuft};
 use crate::emit::Varied;
 use crate::force::Friction;

@@ -1,9 +1,9 @@
 //! Remarks on how balls bounce off each other where contacts by force do not ask them.
 
-use super::{Response, SceneFile};
 use crate::force::Penalty;
 use crate::math::{angle, exp, sqrt};
 use crate::particles::Particle;
+use crate::scene::{Response, SceneFile};
 use alloc::format;
 use alloc::string::String;
 

@@ -1,8 +1,8 @@
 //! Remarks on emitters that give birth to nobody, or not as they seem to say.
 
-use super::SceneFile;
-use super::remarks::odd_elasticity;
+use super::odd_elasticity;
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
+use crate::scene::SceneFile;
 use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;

@@ -1,9 +1,9 @@
 //! Remarks on parts of a scene that do nothing.
 
-use super::{Growth, SceneFile};
 use crate::constrain::{ConstraintKind, Strands};
 use crate::motion::MotionBuf;
 use crate::reap::ReaperKind;
+use crate::scene::{Growth, SceneFile};
 use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;

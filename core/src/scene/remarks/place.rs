@@ -1,12 +1,12 @@
 //! Remarks on where things begin: sunk into scenery, or far from where constraints hold them.
 
-use super::placing::placement;
-use super::{Item, Response, SceneFile};
 use crate::constrain::ConstraintKind;
 use crate::emit::Emitter;
 use crate::index::between;
 use crate::math::{floor, length, max, min};
 use crate::motion::MotionBuf;
+use crate::scene::placing::placement;
+use crate::scene::{Item, Response, SceneFile};
 use crate::shape::{Collider, MeshBuf, Placed, Shape, Surface};
 use crate::time::Time;
 use alloc::format;

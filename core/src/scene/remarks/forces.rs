@@ -1,8 +1,8 @@
 //! Remarks on forces that look for what nobody has, and on what no force looks for.
 
-use super::SceneFile;
 use crate::emit::Varied;
 use crate::force::{ForceKind, Weight};
+use crate::scene::SceneFile;
 use alloc::format;
 use alloc::string::String;
 use core::fmt::Arguments;

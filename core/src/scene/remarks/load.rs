@@ -1,10 +1,10 @@
 //! Remarks on what weighs too much for what bears it, and on what begins in one place.
 
-use super::remarks::MOST_SUBSTEPS;
-use super::{Boxes, Cloth, Response, SceneFile};
+use super::MOST_SUBSTEPS;
 use crate::emit::Varied;
 use crate::force::ForceKind;
 use crate::math::{length, sqrt};
+use crate::scene::{Boxes, Cloth, Response, SceneFile};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -154,7 +154,7 @@ impl SceneFile {
     }
 
     /// The sum of all gravity \[m/s²\].
-    pub(super) fn pull(&self) -> Vec3 {
+    pub(in crate::scene) fn pull(&self) -> Vec3 {
         self.forces.iter().fold(Vec3::ZERO, |sum, force| match force {
             ForceKind::Gravity(gravity) => sum + gravity.acceleration,
             _ => sum,
@@ -163,7 +163,7 @@ impl SceneFile {
 }
 
 /// Words for what helps where a remark asks for so many sub-steps.
-pub(super) fn enough(needed: u32) -> String {
+pub(in crate::scene) fn enough(needed: u32) -> String {
     match needed {
         ..=MOST_SUBSTEPS => format!("run.substeps of {needed} are enough"),
         _ => format!("no number of sub-steps is enough, of which run.substeps may say {MOST_SUBSTEPS}"),

@@ -1,8 +1,8 @@
 //! Remarks on colours that are hardly meant.
 
-use super::{Light, Material, SceneFile, VaryingBuf};
 use crate::math::max;
 use crate::particles::Color;
+use crate::scene::{Light, Material, SceneFile, VaryingBuf};
 use alloc::format;
 use alloc::string::String;
 use core::fmt::Arguments;
