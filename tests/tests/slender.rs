@@ -7,7 +7,7 @@ use pointmass::{ContactMaterial, Gravity, Method, Particle, Scene, Time, Vec3};
 use pointmass_tests::{Random, every, started};
 
 /// Points a side of the ground.
-const COLUMNS: usize = 33;
+const COLUMNS: usize = 21;
 
 /// The ground as a mesh.
 fn mesh(origin: Vec3, spacing: f32, heights: &[f32]) -> MeshBuf {
@@ -23,7 +23,7 @@ fn mesh(origin: Vec3, spacing: f32, heights: &[f32]) -> MeshBuf {
 #[test]
 fn rough_ground_holds_rods_and_plates() {
     let mut random = Random::new(94);
-    for round in (0..120).step_by(every(13)) {
+    for round in (0..120).step_by(every(17)) {
         let scale = [1.0, 0.1, 5.0][round % 3];
         let (spacing, high) = (0.25 * scale, random.between(0.02, 0.1) * scale);
         let wave = |n: usize| (core::f32::consts::TAU * (n % COLUMNS) as f32 / 8.0).cos();

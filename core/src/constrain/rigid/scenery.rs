@@ -344,7 +344,8 @@ impl Visit<'_> {
         self.is_on_round |= turned;
         self.put(bodies, &Contact { normal, ..contact }, on);
         let facing = self.form.facing(out);
-        if dot(facing, out) > ALIKE {
+        let mut alike = self.slots.iter().filter(|slot| dot(slot.normal, normal) > ALIKE);
+        if dot(facing, out) > ALIKE && !alike.any(|slot| slot.count as usize == POINTS) {
             self.rims(bodies, body.rotation * -facing, [on, facing], depth);
         }
     }
@@ -424,8 +425,8 @@ impl Visit<'_> {
     /// Looks for further places of the scenery on a face of the body, with a place in it and its normal: those nearest to the body's corners. What hangs over
     /// an edge lies on that from one end to the other.
     fn rims(&mut self, bodies: &mut Bodies<'_>, normal: Vec3, [inside, out]: [Vec3; 2], depth: f32) {
-        let (body, at, reach) = (self.body, bodies.substep.during[0], self.reach + 2.0 * depth);
-        let far = 2.0 * length(self.form.half(body));
+        let (body, at, above_it) = (self.body, bodies.substep.during[0], self.reach);
+        let (reach, far) = (above_it + 2.0 * depth, 2.0 * length(self.form.half(body)));
         for corner in 0..self.form.corners() {
             let corner = self.form.corner(body, corner);
             // Corners of other faces see what is farther from this one, and those that lie on something see that.
@@ -434,23 +435,44 @@ impl Visit<'_> {
                 continue;
             }
             // From within the body walls beside it are met higher up.
-            let from = body.point(corner - out * (2.0 * reach));
-            let (mut rims, mut left_out) = (heapless::Vec::<(Contact, Vec3), 8>::new(), 0);
-            bodies.colliders.contacts(from, far, at, &mut |contact| {
+            let from = |place: Vec3| body.point(place - out * (2.0 * reach));
+            let on = |contact: &Contact| {
                 let place = body.place(contact.point);
                 let above = dot(place - inside, out);
-                let on = place - out * above;
-                if above <= self.reach && -above <= reach && self.form.nearest(body, on).2 <= self.level() {
-                    left_out += u64::from(rims.push((Contact { normal, ..*contact }, on)).is_err());
+                (above <= above_it && -above <= reach).then_some(place - out * above)
+            };
+            let (mut rims, mut left_out) = (heapless::Vec::<(Contact, Vec3), 8>::new(), 0);
+            bodies.colliders.contacts(from(corner), far, at, &mut |contact| {
+                if let Some(on) = on(contact) {
+                    left_out += u64::from(rims.push((*contact, on)).is_err());
                 }
             });
             bodies.report.caps.contacts += left_out;
-            for (contact, on) in &rims {
-                if !self.is_seam(bodies, contact) {
-                    self.put(bodies, contact, *on);
+            for (contact, place) in rims {
+                // Who lies on what goes on beyond him lies on it up to where his face ends.
+                let (rim, _, beyond) = self.form.nearest(body, place);
+                let end = (beyond > self.level()).then(|| self.nearer(bodies, &contact, from(rim), far));
+                let contact = Contact { normal, ..end.unwrap_or(contact) };
+                let Some(place) = on(&contact).filter(|&place| self.form.nearest(body, place).2 <= self.level()) else {
+                    continue;
+                };
+                if !self.is_seam(bodies, &contact) {
+                    self.put(bodies, &contact, place);
                 }
             }
         }
+    }
+
+    /// The place of the same part of the scenery that is nearest to a place within so far \[m\] of it.
+    fn nearer(&self, bodies: &Bodies<'_>, contact: &Contact, to: Vec3, far: f32) -> Contact {
+        let (mut nearer, mut least) = (*contact, f32::INFINITY);
+        bodies.colliders.contacts_of(&[contact.face], to, far, bodies.substep.during[0], &mut |other| {
+            let aside = length(other.point - contact.point);
+            if aside < least {
+                (nearer, least) = (*other, aside);
+            }
+        });
+        nearer
     }
 
     /// Adds a place, to the points on the same face if there are any.
