@@ -77,6 +77,14 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
         ),
         (
             format!(
+                r#"{{"contacts": {{"position": {{}}}}, "particles": [{{"radius": 0.2, "position": [0.5, 1, 0.5]}}],
+                "cloths": [{{"form": {sheet}, "mass": 1, "fixed": [0, 2, 6, 8], "thickness": 0.02,
+                "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0}}}}]}}"#
+            ),
+            "a.json:cloths[0].thickness: balls of a radius of 0.2 m may slip through it: they meet its particles alone, which are 0.5 m apart; from 0.49497473 m on they do not, or in cells of 0.20203052 m",
+        ),
+        (
+            format!(
                 r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}], "run": {{"substeps": 4}}, "cloths": [
                 {{"form": {sheet}, "mass": 5, "thickness": 0.02, "shell": {{"stretch": [2000, 2000], "shear": 1000, "bending": 0}}}},
                 {{"form": {sheet}, "mass": 0.2, "fixed": [0, 2, 6, 8], "thickness": 0.02,

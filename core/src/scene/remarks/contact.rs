@@ -1,14 +1,16 @@
-//! Remarks on how balls bounce off each other where contacts by force do not ask them.
+//! Remarks on balls: how they bounce off each other where contacts by force do not ask them, and on what cannot hold them.
 
 use crate::force::Penalty;
-use crate::math::{angle, exp, sqrt};
+use crate::math::{angle, exp, length, sqrt};
 use crate::particles::Particle;
-use crate::scene::{Response, SceneFile};
+use crate::scene::{Cloth, Response, SceneFile};
 use alloc::format;
 use alloc::string::String;
 
 /// The difference of two shares of a speed that are given back, up to which there is no remark.
 const ALIKE: f32 = 0.05;
+/// How much wider than at rest the meshes of a sheet that bears a ball may be, as measured.
+const WIDER: f32 = 1.4;
 
 impl SceneFile {
     /// A remark on contacts by force that do not bounce as the scene's balls and materials say: the damping alone tells how.
@@ -29,6 +31,26 @@ impl SceneFile {
             )
         };
         ((meant - kept).abs() > ALIKE && (0.0..=1.0).contains(&meant)).then(differs)
+    }
+
+    /// A remark on a sheet with thickness through which the scene's balls slip, or may: it meets them by its particles alone.
+    pub(super) fn lets_through(&self, cloth: &Cloth) -> Option<String> {
+        let (thickness, sheet) = (cloth.thickness.filter(|&thickness| thickness > 0.0)?, cloth.sheet()?);
+        self.contacts?;
+        let balls = self.particles.iter().filter(|ball| !ball.fixed).map(|ball| ball.radius);
+        let born = self.emitters.iter().filter(|emitter| !emitter.fixed).map(|emitter| emitter.radius.mean);
+        let least = balls.chain(born).filter(|&radius| radius > 0.0).fold(f32::INFINITY, f32::min);
+        let [a, b] = [0, 1].map(|i| sheet.sides[i] / sheet.cells[i] as f32);
+        let own = if self.boxes.is_empty() { 0.0 } else { 0.5 * thickness };
+        let needed = WIDER * 0.5 * length(a + b).max(length(a - b)) - own;
+        let slips = || {
+            format!(
+                "balls of a radius of {least} m may slip through it: they meet its particles alone, which are {} m apart; from {needed} m on they do not, or in cells of {} m",
+                length(a).max(length(b)),
+                length(a).max(length(b)) * (least + own) / (needed + own)
+            )
+        };
+        (least < needed).then(slips)
     }
 
     /// The first elasticity of balls that is said, and where: one like that of all who say nothing may not have been.

@@ -49,6 +49,7 @@ impl SceneFile {
         self.add_heaps(&mut add);
         for (i, cloth) in self.cloths.iter().enumerate() {
             add(format_args!("cloths[{i}].thickness"), self.heavy_on_cloth(cloth));
+            add(format_args!("cloths[{i}].thickness"), self.lets_through(cloth));
             add(format_args!("cloths[{i}]"), self.long_for_plate(cloth));
         }
         for (i, cord) in self.ropes.iter().enumerate() {
