@@ -278,3 +278,28 @@ fn scn_is_remarked_on_as_json_is() {
     remarked(&cone("90"), "", Some("a.json:emitters[0].spread: 90 rad is not from 0 to π/2"));
     remarked(&cone("1.5708"), "", None);
 }
+
+/// Constraints and forces that name nobody do nothing, and are named themselves.
+#[test]
+fn what_names_nobody_is_remarked_on() {
+    let constraint =
+        |name: &str, rest: &str| format!(r#"{{"particles": [{{}}], "constraints": [{{"{name}": {{{rest}}}}}]}}"#);
+    for (name, rest) in [
+        ("attach", r#""particles": [], "motion": {}"#),
+        ("strain_limits", r#""triangles": [], "warp": [1, 0, 0], "params": {"warp": [0.9, 1.02]}"#),
+    ] {
+        let said = format!("a.json:constraints[0].{name}: it names no particles, so it does nothing");
+        remarked(&constraint(name, rest), "", Some(&said));
+    }
+    let force = |text: &str| format!(r#"{{"particles": [{{}}, {{}}, {{}}], "forces": [{{{text}}}]}}"#);
+    let none = ["pressure.triangles", "aerodynamics.triangles", "cylinder_drag.segments"];
+    let texts = [
+        r#""pressure": {"triangles": [], "amount": 1}"#,
+        r#""aerodynamics": {"triangles": [], "field": [], "drag": 1}"#,
+        r#""cylinder_drag": {"segments": [], "field": [], "diameter": 0.01}"#,
+    ];
+    for (name, text) in none.into_iter().zip(texts) {
+        let said = format!("a.json:forces[0].{name}: it has none, so it pushes nobody");
+        remarked(&force(text), "", Some(&said));
+    }
+}

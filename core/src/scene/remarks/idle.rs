@@ -1,6 +1,7 @@
 //! Remarks on parts of a scene that do nothing.
 
 use crate::constrain::{ConstraintKind, Strands};
+use crate::force::ForceKind;
 use crate::motion::MotionBuf;
 use crate::reap::ReaperKind;
 use crate::scene::{Growth, SceneFile};
@@ -59,8 +60,28 @@ impl SceneFile {
             let point = || "a plane is infinite, so all are led to its one point".into();
             add(format_args!("goals[{i}].shape"), infinite.then(point));
         }
+        self.add_unbound(add);
         self.add_swings(add);
         self.add_lives(add);
+    }
+
+    /// Remarks on constraints and forces that name nobody.
+    fn add_unbound(&self, add: &mut impl FnMut(Arguments<'_>, Option<String>)) {
+        for (i, constraint) in self.constraints.iter().enumerate() {
+            let nobody = constraint.ends().next().is_none();
+            let nothing = || "it names no particles, so it does nothing".into();
+            add(format_args!("constraints[{i}].{}", constraint.name()), nobody.then(nothing));
+        }
+        for (i, force) in self.forces.iter().enumerate() {
+            let (nobody, of) = match force {
+                ForceKind::Pressure(gas) => (gas.triangles.is_empty(), "pressure.triangles"),
+                ForceKind::Aerodynamics(air) => (air.triangles.is_empty(), "aerodynamics.triangles"),
+                ForceKind::CylinderDrag(air) => (air.segments.is_empty(), "cylinder_drag.segments"),
+                _ => (false, ""),
+            };
+            let nothing = || "it has none, so it pushes nobody".into();
+            add(format_args!("forces[{i}].{of}"), nobody.then(nothing));
+        }
     }
 
     /// Remarks on motions that say how far to swing, and not how often.
