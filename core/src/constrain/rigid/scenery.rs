@@ -426,7 +426,7 @@ impl Visit<'_> {
     /// an edge lies on that from one end to the other.
     fn rims(&mut self, bodies: &mut Bodies<'_>, normal: Vec3, [inside, out]: [Vec3; 2], depth: f32) {
         let (body, at, above_it) = (self.body, bodies.substep.during[0], self.reach);
-        let (reach, far) = (above_it + 2.0 * depth, 2.0 * length(self.form.half(body)));
+        let (reach, far, level) = (above_it + 2.0 * depth, 2.0 * length(self.form.half(body)), self.level());
         for corner in 0..self.form.corners() {
             let corner = self.form.corner(body, corner);
             // Corners of other faces see what is farther from this one, and those that lie on something see that.
@@ -436,28 +436,26 @@ impl Visit<'_> {
             }
             // From within the body walls beside it are met higher up.
             let from = |place: Vec3| body.point(place - out * (2.0 * reach));
-            let on = |contact: &Contact| {
+            let under = |contact: &Contact| {
                 let place = body.place(contact.point);
                 let above = dot(place - inside, out);
                 (above <= above_it && -above <= reach).then_some(place - out * above)
             };
             let (mut rims, mut left_out) = (heapless::Vec::<(Contact, Vec3), 8>::new(), 0);
             bodies.colliders.contacts(from(corner), far, at, &mut |contact| {
-                if let Some(on) = on(contact) {
-                    left_out += u64::from(rims.push((*contact, on)).is_err());
+                let Some(on) = under(contact) else { return };
+                let (rim, _, beyond) = self.form.nearest(body, on);
+                // Who lies on what goes on beyond him lies on it up to where his face ends.
+                let end = (beyond > level).then(|| self.nearer(bodies, contact, from(rim), far));
+                let contact = Contact { normal, ..end.unwrap_or(*contact) };
+                if let Some(on) = under(&contact).filter(|&on| self.form.nearest(body, on).2 <= level) {
+                    left_out += u64::from(rims.push((contact, on)).is_err());
                 }
             });
             bodies.report.caps.contacts += left_out;
-            for (contact, place) in rims {
-                // Who lies on what goes on beyond him lies on it up to where his face ends.
-                let (rim, _, beyond) = self.form.nearest(body, place);
-                let end = (beyond > self.level()).then(|| self.nearer(bodies, &contact, from(rim), far));
-                let contact = Contact { normal, ..end.unwrap_or(contact) };
-                let Some(place) = on(&contact).filter(|&place| self.form.nearest(body, place).2 <= self.level()) else {
-                    continue;
-                };
-                if !self.is_seam(bodies, &contact) {
-                    self.put(bodies, &contact, place);
+            for (contact, on) in &rims {
+                if !self.is_seam(bodies, contact) {
+                    self.put(bodies, contact, *on);
                 }
             }
         }
