@@ -269,10 +269,10 @@ fn check_particle(at: &str, particle: &Particle) -> Checked {
     Err(SceneError::value(of_mass, message))
 }
 
-/// Checks the numbers that births vary by.
-fn check_varied(at: &str, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) -> Checked {
-    let Emitter { speed, radius, mass, drag, charge, elasticity, lifetime, .. } = emitter;
-    let varied = [
+/// The numbers of births that may vary, by their names.
+pub(super) fn varied<S, M>(emitter: &Emitter<S, M>) -> [(&'static str, Varied); 7] {
+    let Emitter { speed, radius, mass, drag, charge, elasticity, lifetime, .. } = *emitter;
+    [
         ("speed", speed),
         ("radius", radius),
         ("mass", mass),
@@ -280,14 +280,19 @@ fn check_varied(at: &str, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) -
         ("charge", charge),
         ("elasticity", elasticity),
         ("lifetime", lifetime),
-    ];
-    for (name, Varied { mean, half_width }) in varied {
-        finite(&format!("{at}.{name}"), &[*mean, *half_width])?;
+    ]
+}
+
+/// Checks the numbers that births vary by.
+fn check_varied(at: &str, emitter: &Emitter<Shape<String>, Option<MotionBuf>>) -> Checked {
+    for (name, Varied { mean, half_width }) in varied(emitter) {
+        finite(&format!("{at}.{name}"), &[mean, half_width])?;
         if !(mean - half_width).is_finite() || !(mean + half_width).is_finite() {
             let message = format!("{mean:?} ± {half_width:?} goes beyond the range of a 32-bit float");
             return Err(SceneError::value(format!("{at}.{name}"), message));
         }
     }
+    let Emitter { mass, radius, .. } = emitter;
     let lightest = mass.mean - mass.half_width.abs();
     if !emitter.fixed && !(lightest > 3e-39) {
         return Err(SceneError::value(format!("{at}.mass"), "has to be above zero, the half_width counted in"));

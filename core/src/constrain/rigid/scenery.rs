@@ -344,6 +344,7 @@ impl Visit<'_> {
         self.is_on_round |= turned;
         self.put(bodies, &Contact { normal, ..contact }, on);
         let facing = self.form.facing(out);
+        // Four points bear a face, and further ones would only take their places.
         let mut alike = self.slots.iter().filter(|slot| dot(slot.normal, normal) > ALIKE);
         if dot(facing, out) > ALIKE && !alike.any(|slot| slot.count as usize == POINTS) {
             self.rims(bodies, body.rotation * -facing, [on, facing], depth);

@@ -3,6 +3,7 @@
 use super::odd_elasticity;
 use crate::emit::{Emitter, Spread, Varied, WhereSparse};
 use crate::scene::SceneFile;
+use crate::scene::check::varied;
 use crate::shape::Shape;
 use alloc::format;
 use alloc::string::String;
@@ -55,20 +56,6 @@ impl SceneFile {
         };
         (duration > 0.0 && f64::from(start) >= duration).then(late)
     }
-}
-
-/// The numbers of births that may vary, by their names.
-fn varied<S, M>(emitter: &Emitter<S, M>) -> [(&'static str, Varied); 7] {
-    let Emitter { speed, radius, mass, drag, charge, elasticity, lifetime, .. } = *emitter;
-    [
-        ("speed", speed),
-        ("radius", radius),
-        ("mass", mass),
-        ("drag", drag),
-        ("charge", charge),
-        ("elasticity", elasticity),
-        ("lifetime", lifetime),
-    ]
 }
 
 /// A remark on a cone that is but a point, and so has no way for births to leave.
