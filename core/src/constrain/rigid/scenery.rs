@@ -32,6 +32,10 @@ const ONE_FACE: f32 = 0.9999;
 const WITHIN: f32 = 0.9;
 /// The cosine of the angle within which a corner of the scenery presses no otherwise than a corner of the body.
 const ALIKE: f32 = 0.9;
+/// How deep a body may be in the scenery where it is first seen there, at the most, as a share of a length that is small beside it; and from which share on that
+/// is more than rounding.
+const SUNK: f32 = 0.5;
+const NOTED: f32 = 0.005;
 
 /// A part of the scenery that is near a piece: something convex, or the triangles of a mesh around an edge or a corner that is nearest of all of them to the
 /// piece's middle.
@@ -183,7 +187,8 @@ pub(super) fn holds(bodies: &Bodies<'_>, body: &Body, slots: &[Manifold]) -> boo
         slot.points().iter().all(|point| {
             let (place, mut is_there) = (point.places[0], false);
             bodies.colliders.contacts(place, small, at, &mut |contact| {
-                is_there |= length(contact.point - place) <= 0.1 * small && contact.velocity == Vec3::ZERO;
+                let aside = contact.point - place;
+                is_there |= length(aside) <= (0.1 + SUNK) * small && contact.velocity == Vec3::ZERO;
             });
             is_there
         })
@@ -480,7 +485,7 @@ impl Visit<'_> {
         // Where it is over the surface, whatever the way on which that was met.
         let over = self.body.point(place);
         let gap = dot(normal, over - point);
-        let (on, level) = (over - normal * gap, self.level());
+        let (on, level, small) = (over - normal * gap, self.level(), self.body.small());
         let Some(number) = self.slot(bodies, contact).or_else(|| self.give_way(bodies, contact, gap)) else { return };
         let Some(slot) = self.slots.get_mut(number) else { return };
         if slot.points().iter().any(|other| length(other.places[1] - place) <= level) {
@@ -495,9 +500,12 @@ impl Visit<'_> {
         if slot.count as usize >= POINTS && !make_room(slot, self.body, [on, over]) {
             return;
         }
+        // What moves comes to where others were.
+        let depth = if contact.velocity == Vec3::ZERO { -gap } else { 0.0 };
+        let on = on - normal * sunk(&self.before, (on, normal), place, (depth, small));
         slot.put([on, place], before, 0.0, &Mat3::IDENTITY);
         if let Some(point) = slot.points.get_mut(slot.count as usize - 1) {
-            point.surface = mean_velocity(bodies, contact, self.body.small());
+            point.surface = mean_velocity(bodies, contact, small);
             point.lift = dot(point.surface, slot.normal);
         }
     }
@@ -588,6 +596,19 @@ fn make_room(slot: &mut Manifold, body: &Body, spot: Spot) -> bool {
         (slot.points, slot.count) = (kept, count as u32);
     }
     is_room
+}
+
+/// How far a body stays in the scenery at a place of it \[m\], of so much: as far as it was when that was first seen. What lies across edges is seen now at one place,
+/// now at another, and would be lifted each time.
+fn sunk(before: &[Manifold], (on, normal): (Vec3, Vec3), place: Vec3, (depth, small): (f32, f32)) -> f32 {
+    let least = NOTED * small;
+    if !(depth > least) {
+        return 0.0;
+    }
+    let alike = before.iter().filter(|slot| dot(slot.normal, normal) > ALIKE);
+    let known = alike.flat_map(Manifold::points).find(|point| length(point.places[1] - place) <= 0.25 * small);
+    let sunk = known.map_or(depth, |point| min(depth, dot(normal, on - point.places[0])));
+    if sunk > least { min(sunk, SUNK * small) } else { 0.0 }
 }
 
 /// The mean velocity in the sub-step of what the scenery has at a contact \[m/s\]: what turns leads on along its arc.
