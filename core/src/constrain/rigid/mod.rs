@@ -28,6 +28,7 @@ mod moving;
 mod narrow;
 mod order;
 mod pack;
+mod parts;
 mod pass;
 mod pose;
 mod rigid_box;
@@ -39,6 +40,7 @@ mod span;
 mod stand;
 mod tell;
 mod touch;
+mod visit;
 
 use super::{Bodies, Constraint, Demand, Share};
 use crate::memory::take;
@@ -69,8 +71,10 @@ use span::Span;
 /// colliders a body's corners count, and for each convex part of the scenery near it the place where an edge or a face comes nearest to that, or is
 /// deepest in it, sought from the body's middle; and along a face what is nearest to its corners. A solid that a body's middle has got into may press it
 /// out to any side. What rises from the floor under a corner by no more than a four-hundredth of the body's least side is part of
-/// it, so that nothing catches on seams. A loose ball, a particle with a radius that belongs to no body, is met at the place nearest to it; it does
-/// not spin, and while it touches a body it meets the scenery by the same impulses. Impulses at these points, with those of the last sub-step to
+/// it, so that nothing catches on seams. Where it is found to be in scenery that stands still, by no more than a two-hundredth of that side, it
+/// is not lifted: what lies across edges is met now at one place, now at another. A loose ball, a particle with a radius that belongs to no
+/// body, is met at the place nearest to it; it does not spin, and while it touches a body it meets the scenery by the same impulses. Impulses at
+/// these points, with those of the last sub-step to
 /// begin with, keep bodies from passing into each other within the sub-step (Macklin et al., "Small Steps in Physics Simulation", SCA 2019;
 /// Catto, "Soft Constraints", GDC 2011), then velocities are brought to part as elasticity wants (Müller et al., "Detailed Rigid Body Simulation
 /// with Extended Position Based Dynamics", SCA 2020, section 3.6). Friction is Coulomb's. All impulses act on both at one place, so that linear
