@@ -115,6 +115,95 @@ fn no_blow_gives_energy() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
+/// Bodies that go by up to a hundred of their sizes in a sub-step, on a plane and in a room, alone and among others.
+#[test]
+fn no_speed_gives_energy() {
+    let mut random = Random::new(96);
+    let points: Vec<_> = (0..30).map(|_| random.direction() * random.between(0.09, 0.12)).collect();
+    let stone = [HullBuf::of(&points).expect("a stone")];
+    let (mut cases, mut failures) = (0, vec![]);
+    for round in 0..often(1500) {
+        if !is_third(&mut cases) {
+            continue;
+        }
+        let plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+        let room = Cuboid { min: Vec3::new(-1.5, 0.0, -1.5), max: Vec3::new(1.5, 2.0, 1.5) };
+        let floor: &dyn Collider = if round % 2 == 0 { &plane } else { &room };
+        let elasticity = [0.0, 0.5, 1.0][random.word() as usize % 3];
+        let substeps = 1 + (random.word() % 8) as u32;
+        let sizes = 10f32.powf(random.between(-0.5, 2.0));
+        let speed = sizes * 0.2 * 60.0 * substeps as f32;
+        let count = 1 + (random.word() % 5) as u32;
+        let mu = if random.unit() < 0.5 { 0.0 } else { random.unit() };
+        let method = Method::ALL[1 + random.word() as usize % (Method::ALL.len() - 1)];
+        let (mut start, mut bodies) = (vec![], vec![]);
+        for i in 0..count {
+            let hull = (random.unit() < 0.4).then_some(&stone[0]);
+            let place = Vec3::new(random.between(-0.2, 0.2), 0.25 + 0.3 * i as f32, random.between(-0.2, 0.2));
+            let (of, solid) = body(&mut random, hull, place, 8 * i, elasticity);
+            let pace = random.direction() * Vec3::new(1.0, 0.1, 1.0) * speed;
+            start.extend(solid.map(|p| Particle { velocity: p.velocity + pace, ..p }));
+            bodies.push(of);
+        }
+        let bodies = RigidBodies { boxes: bodies, hulls: &stone, balls: 0 };
+        let friction = Some(Friction { static_: mu, kinetic: mu });
+        let materials = [ContactMaterial { elasticity: Some(elasticity), friction }];
+        let scene = Scene {
+            start: &start,
+            forces: &DOWN,
+            colliders: floor,
+            materials: &materials,
+            constraints: &bodies,
+            integrator: method.integrator(),
+            substeps,
+            ..Scene::EMPTY
+        };
+        let [above, _] = course(&scene, 1, 0.0);
+        if !(above < 1e-3) {
+            let what = format!("{count} bodies, e {elasticity}, mu {mu}, {sizes} sizes in one of {substeps} sub-steps");
+            failures.push(format!("{what}, {}: {above}", method.name()));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// Boxes are thrown on a smooth floor: how fast they slide along it makes no difference to how they bounce and tumble.
+#[test]
+fn boxes_bounce_on_a_smooth_floor_alike_however_fast_they_slide() {
+    let mut random = Random::new(97);
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    for round in 0..often(300) {
+        let elasticity = [0.0, 0.5][round % 2];
+        let at = Vec3::Y * 0.27;
+        let (of, solid) = body(&mut random, None, at, 0, elasticity);
+        let solid = solid.map(|p| Particle { velocity: p.velocity * Vec3::new(0.3, 0.3, 0.3), ..p });
+        let substeps = 1 + (random.word() % 8) as u32;
+        let method = Method::ALL[random.word() as usize % Method::ALL.len()];
+        let fast = 0.1 * 60.0 * substeps as f32 * 10f32.powf(random.between(-1.0, 1.5));
+        let [slow, quick] = [0.0, fast].map(|speed| {
+            let start = solid.map(|p| Particle { velocity: p.velocity + Vec3::X * speed, ..p });
+            let bodies = RigidBodies::boxes([of]);
+            let scene = Scene {
+                start: &start,
+                forces: &DOWN,
+                colliders: &floor,
+                constraints: &bodies,
+                integrator: method.integrator(),
+                substeps,
+                ..Scene::EMPTY
+            };
+            let mut system = started(&scene, 8, 1);
+            let heights = (1..=15).map(|frame| {
+                system.step_to(&scene, Time::frame(frame, 60));
+                system.particles().position.iter().map(|x| x.y).collect::<Vec<_>>()
+            });
+            heights.collect::<Vec<_>>().concat()
+        });
+        let apart = slow.iter().zip(&quick).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(apart < 1e-4, "{fast} m/s, {substeps} sub-steps, e {elasticity}, {}: {apart} m", method.name());
+    }
+}
+
 /// Boxes that hit a wall with one corner, smoothly.
 #[test]
 fn a_corner_gives_back_all_of_it() {

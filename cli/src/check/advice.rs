@@ -30,7 +30,6 @@ pub(crate) fn advise(check: &Study, model: &Model) -> Vec<String> {
     advice.extend(check.holds.iter().filter_map(|hold| held(check, hold)));
     advice.extend(check.holds.iter().filter_map(|hold| fallen(check, hold)));
     advice.extend(check.holds.iter().filter_map(|hold| shorter(check, hold.tumbling(check.h()))));
-    advice.extend(check.holds.iter().filter_map(|hold| shorter(check, hold.racing(check.h()))));
     advice.extend(check.holds.iter().filter_map(|hold| shorter(check, hold.trembling(check.h()))));
     advice.extend(world(check));
     advice

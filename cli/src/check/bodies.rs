@@ -1,4 +1,4 @@
-//! Rigid bodies: how far piles of them sink, and in which sub-steps they turn or go too far.
+//! Rigid bodies: how far piles of them sink, and in which sub-steps they turn too far.
 
 use super::hold::{Hold, Solving};
 use super::part::place;
@@ -14,19 +14,11 @@ use std::collections::HashMap;
 const PILE: usize = 10;
 /// The turn of a box in a sub-step from which on it may be met too late \[rad\].
 pub(super) const TURN: f64 = 0.5;
-/// So many of its least sides a box may go in a sub-step: of those that slide by three to five they have been seen to gain energy.
-const SIDES: f64 = 3.0;
 
 /// By how much a pile of so many boxes sinks where it does so most, for each m/s² of gravity and s² of a sub-step \[m\]: as measured
 /// within a twentieth of what three to twenty do, and two.
 fn sinks(pile: usize) -> f64 {
     (0.246 * pile as f64 - 0.59).max(0.03)
-}
-
-/// The mean of something of a body's particles.
-fn middle_of(model: &Model, of: &RigidBox, what: impl Fn(&Particle) -> Vec3) -> Vec3 {
-    let own = model.particles.iter().skip(of.first as usize).take(of.count as usize);
-    own.map(what).sum::<Vec3>() / of.count.max(1) as f32
 }
 
 /// The number of boxes that stand on each other in the tallest pile to begin with, as far as gravity pulls.
@@ -98,7 +90,6 @@ impl Hold {
         let weight = f64::from(gravity(model).length());
         let all = &model.constraints.1.boxes;
         let pile = Some(all.len().min(PILE).max(tallest(model))).filter(|&boxes| boxes > 1);
-        let speed = |of: &RigidBox| f64::from(middle_of(model, of, |particle| particle.velocity).length());
         Self {
             calm: f64::INFINITY,
             place: place(model, 0, group[0].first as usize),
@@ -112,7 +103,6 @@ impl Hold {
             estimated: false,
             fall: None,
             half: Some(half),
-            speed: group.iter().map(speed).fold(0.0, f64::max),
             tumbles: (4.0 * weight * half).sqrt() / half,
             pile,
             more: 0,
@@ -130,20 +120,6 @@ impl Hold {
                 "in sub-steps of {now} {name} that have fallen by their own size may turn by {} rad, and sink into what they strike by a \
                  twentieth of their size and more",
                 plain(turn)
-            );
-            (told, enough)
-        })
-    }
-
-    /// The warning about sub-steps of `h` \[s\] in which boxes begin to go too far, and the sub-steps that are short enough for that \[s\]; or none.
-    pub(crate) fn racing(&self, h: f64) -> Option<(String, f64)> {
-        let side = 2.0 * self.half?;
-        let (sides, enough) = (self.speed * h / side, SIDES * side / self.speed);
-        (sides > SIDES * (1.0 + 1e-6)).then(|| {
-            let (name, now) = (self.name(), time(h));
-            let told = format!(
-                "in sub-steps of {now} {name} go by {} of their least sides, and may gain energy where they slide",
-                plain(sides)
             );
             (told, enough)
         })

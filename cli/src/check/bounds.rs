@@ -132,7 +132,6 @@ impl Bounds {
         let held = self.pushed.clone().map(placed).into_iter();
         let held = held.chain(self.holds.iter().filter_map(|hold| hold.warning(step)));
         let held = held.chain(self.holds.iter().filter_map(|hold| Some(hold.tumbling(step)?.0)));
-        let held = held.chain(self.holds.iter().filter_map(|hold| Some(hold.racing(step)?.0)));
         let held = held.chain(self.holds.iter().filter_map(|hold| Some(hold.trembling(step)?.0)));
         let is_alone = method.chooses_steps() || self.drag_step(method).admits(step);
         let held = held.chain(self.birth_warning(step).filter(|_| is_alone).map(placed));

@@ -52,9 +52,6 @@ pub(crate) struct Hold {
     /// How fast boxes may turn that strike something with a corner when they have fallen by their own size \[rad/s\].
     #[serde(skip)]
     pub(super) tumbles: f64,
-    /// How fast the fastest of the boxes is to begin with \[m/s\].
-    #[serde(skip)]
-    pub(super) speed: f64,
     /// The longest sub-step in which slack ropes come to rest \[s\].
     #[serde(skip)]
     pub(super) calm: f64,
@@ -143,7 +140,6 @@ impl Hold {
             fall: Fall::of(model, kind, held),
             half: None,
             tumbles: 0.0,
-            speed: 0.0,
             pile: None,
             more: group.len() - 1,
             leads: kind.leads(),

@@ -17,7 +17,7 @@ pub(super) struct Point {
     pub(super) driven: f32,
     /// How far the second has crept along the first since friction has held them there, in the world \[m\].
     pub(super) crept: Vec3,
-    /// From the centre of each to the middle between them \[m\].
+    /// From the centre of each to where they press on each other \[m\].
     pub(super) arms: [Vec3; 2],
     /// The place on each, in its box's frame \[m\].
     pub(super) places: [Vec3; 2],

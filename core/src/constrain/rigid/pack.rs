@@ -12,7 +12,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(super) struct Spots {
-    /// From the centre of each to the middle between them \[m\].
+    /// From the centre of each to where they press on each other \[m\].
     pub(super) arms: [[Row; 3]; 2],
     /// How fast they shall part \[m/s\], the scenery's own speed included.
     pub(super) wanted: Row,

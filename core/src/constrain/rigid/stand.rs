@@ -8,7 +8,7 @@ use super::pack::{Kept, Pack, Places, surfaces};
 use super::pose::{Motion, Pose};
 use super::span::{FAR, Span};
 use crate::collide::RESTING;
-use crate::lanes::{Eight, Kernel, Vectors, load, mask_of, max, negated, not, saved};
+use crate::lanes::{Eight, Kernel, Vectors, load, mask_of, max, min, negated, not, saved};
 use bytemuck::Zeroable;
 
 /// A change of the speed at which two part is too small to go over their neighbours again for: it as a share of what the forces change their speeds
@@ -144,11 +144,14 @@ struct Pair<F> {
     gives: [F; 2],
     /// The first is the world.
     on_scenery: bool,
+    /// How far on the way from the place on the first to that on the second they press on each other, as a share: he whom it moves more knows better where he
+    /// is pressed. What slides goes far in a sub-step, and would be turned the more by one pressed halfway the faster it is.
+    share: F,
 }
 
 /// How two stand to each other at a point.
 struct Stance<F> {
-    /// From the centre of each to the middle between the places \[m\].
+    /// From the centre of each to where they press on each other \[m\].
     arms: [Vectors<F>; 2],
     /// How far apart they are, and how far the second has crept along the first \[m\].
     gap: F,
@@ -161,16 +164,21 @@ impl<F: Eight> Pair<F> {
         let everyone = pack.everyone();
         let [a, b] = [pack.side(0, bodies, everyone, nobody), pack.side(1, bodies, everyone, nobody)];
         let gives = [mask_of(like, pack.gives[0]), mask_of(like, pack.gives[1])];
-        Self { poses: [Pose::of(like, &a), Pose::of(like, &b)], gives, on_scenery }
+        let poses = [Pose::of(like, &a), Pose::of(like, &b)];
+        let [one, other] = [0, 1].map(|side| poses[side].motion.inverse_mass & gives[side]);
+        let sum = one + other;
+        let share =
+            if on_scenery { like.all(1.0) } else { sum.simd_gt(like.all(0.0)).select(other / sum, like.all(0.5)) };
+        Self { poses, gives, on_scenery, share }
     }
 
     #[inline(always)]
     fn stance(&self, normal: Vectors<F>, places: [Vectors<F>; 2]) -> Stance<F> {
         let [a, b] = &self.poses;
         let (from, to) = (a.point(places[0]), b.point(places[1]));
-        let (way, middle) = (to - from, (from + to) * normal.0[0].all(0.5));
+        let (way, place) = (to - from, from + (to - from) * self.share);
         let (gap, crept) = (normal.dot(way), aside(way, normal));
-        Stance { arms: [middle - a.center, middle - b.center], gap, crept }
+        Stance { arms: [place - a.center, place - b.center], gap, crept }
     }
 
     /// How fast they part \[m/s\], the scenery moving so.
@@ -308,6 +316,14 @@ impl<F: Eight> Pair<F> {
         if self.on_scenery { b } else { a | b }
     }
 
+    /// Where one has slid so far along the other in the sub-step that it is pressed elsewhere.
+    #[inline(always)]
+    fn slid_far(&self, &Stance { arms: [one, other], crept, .. }: &Stance<F>) -> F {
+        let like = self.share;
+        let slid = crept.dot(crept).simd_gt(min(one.dot(one), other.dot(other)) * like.all(FAR));
+        if self.on_scenery { like.all(0.0) } else { slid }
+    }
+
     /// Follows the bodies' places when they have gone, and leaves out of how far apart they are, and of what has crept, the way that the scenery has
     /// gone; lets them slip as it moves from now on, and no longer back. Returns a bit for each that bounces.
     #[inline(always)]
@@ -341,6 +357,7 @@ impl<F: Eight> Pair<F> {
             let ahead = is_calm.select(negated(stance.gap) / h, like.all(f32::NEG_INFINITY));
             let wanted = touches.select(bounce, ahead);
             spots.arms = [stance.arms[0].saved(), stance.arms[1].saved()];
+            let far = far | self.slid_far(&stance);
             if far.any() {
                 // By what impulses did before they went, passes would drive them on and on.
                 let anew = self.yielding(stance.arms, [along[0], along[1], normal]);
