@@ -204,6 +204,49 @@ fn boxes_bounce_on_a_smooth_floor_alike_however_fast_they_slide() {
     }
 }
 
+/// Two boxes that begin in each other part as fast as they did, or as their elasticity says where they meet, whatever the sub-step: contacts push and do not hold.
+#[test]
+fn what_overlaps_parts_as_fast_as_it_should() {
+    let mut random = Random::new(98);
+    for round in 0..often(600) {
+        let substeps = [1, 4, 20, 400][round % 4];
+        let side = random.magnitude(0.01, 3.0);
+        let overlap = side * random.between(1e-3, 0.05);
+        let elasticity = [0.0, 0.5, 1.0][random.word() as usize % 3];
+        let parting = random.between(-1.0, 1.0) * side;
+        let along = random.direction();
+        let turn = [0.0, -along.z, along.y, 1.0 + along.x];
+        let (mut start, mut boxes) = (vec![], vec![]);
+        for way in [-0.5, 0.5] {
+            let of = RigidBox::new(Vec3::splat(0.5 * side), along * (way * (side - overlap)), 8 * boxes.len() as u32);
+            let of = RigidBox { turn, ..of };
+            start.extend(of.solid(Particle {
+                velocity: along * (way * parting),
+                mass: 0.5,
+                elasticity,
+                ..Particle::REST
+            }));
+            boxes.push(of);
+        }
+        let bodies = RigidBodies::boxes(boxes);
+        let method = Method::ALL[random.word() as usize % Method::ALL.len()];
+        let scene =
+            Scene { start: &start, constraints: &bodies, integrator: method.integrator(), substeps, ..Scene::EMPTY };
+        let mut system = started(&scene, 16, 1);
+        for frame in 1..=3 {
+            system.step_to(&scene, Time::frame(frame, 60));
+            let v = system.particles().velocity;
+            let middle = |first: usize| v[first..first + 8].iter().sum::<Vec3>() / 8.0;
+            let now = (middle(8) - middle(0)).dot(along);
+            let wanted = if parting < 0.0 { -parting * elasticity } else { parting };
+            assert!(
+                (now - wanted).abs() < 1e-3 * side,
+                "{side} m, {overlap} m deep, e {elasticity}, {substeps} sub-steps: {parting} to {now} m/s"
+            );
+        }
+    }
+}
+
 /// Boxes that hit a wall with one corner, smoothly.
 #[test]
 fn a_corner_gives_back_all_of_it() {

@@ -567,6 +567,37 @@ fn strands_that_are_attached_by_nothing_are_remarked_on() {
     );
 }
 
+/// Sheets feel ropes only when these have been solved: how far they give way by that is told, and who may be driven by it.
+#[test]
+fn ropes_on_sheets_are_remarked_on() {
+    let remarks = |cells: u32, substeps: u32, rope: &str, ties: &str| {
+        let text = format!(
+            r#"{{"run": {{"substeps": {substeps}}}, "forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}],
+            "cloths": [{{"form": {{"sheet": {{"corner": [0, 0, 0], "sides": [[0.5, 0, 0], [0, -0.5, 0]], "cells": [{cells}, {cells}]}}}},
+                "density": 0.2, "shell": {{"stretch": [1000, 1000], "shear": 60}}, "fixed": [0, {cells}]}}],
+            "ropes": [{{"segments": 10, "weight": 0.07, {rope}}}]{ties}}}"#
+        );
+        SceneFile::from_json("it.json", &text).unwrap().remarks()
+    };
+    let hung = r#""curve": [[0.25, -0.5, 0], [0.25, -1, 0]], "ends": [{"cloth": 0}, null]"#;
+    for (cells, substeps, is_told) in [(12, 4, true), (12, 40, false), (4, 20, false), (24, 40, true)] {
+        let told = remarks(cells, substeps, hung, "");
+        assert_eq!(
+            told.iter().any(|remark| remark.starts_with("ropes[0].ends: it bears 0.035 kg")),
+            is_told,
+            "{told:?}"
+        );
+    }
+    let sewn = r#""curve": [[0, -0.5, 0], [0.5, -0.5, 0]]"#;
+    for (points, more, is_told) in
+        [("0, 5, 10", "", true), ("3", "", false), ("0, 5, 10", r#", "compliance": 1e-4"#, false)]
+    {
+        let ties = format!(r#", "ties": [{{"of": {{"rope": 0}}, "points": [{points}], "to": {{"cloth": 0}}{more}}}]"#);
+        let told = remarks(6, 4, sewn, &ties);
+        assert_eq!(told.iter().any(|remark| remark.starts_with("ties[0]: a rope that is sewn")), is_told, "{told:?}");
+    }
+}
+
 /// How far a load of so many newtons a metre stretches a sheet, by Saint-Venant and Kirchhoff: k (1 + e) (e + e² / 2).
 fn strain_under(pull: f64, stretch: f64) -> f64 {
     let (mut least, mut most) = (0.0f64, 10.0);

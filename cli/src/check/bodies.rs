@@ -5,7 +5,6 @@ use super::part::place;
 use super::words::{plain, time};
 use crate::stall::gravity;
 use glam::{Quat, Vec3};
-use pointmass::Particle;
 use pointmass::constrain::RigidBox;
 use pointmass::scene::Model;
 use std::collections::HashMap;

@@ -126,6 +126,11 @@ impl Cord {
         self.weight.unwrap_or(self.density.unwrap_or(0.0) * area)
     }
 
+    /// The mass of all of it \[kg\].
+    pub(super) fn mass(&self) -> f32 {
+        self.by_metre() * self.curve.windows(2).map(|ends| length(ends[1] - ends[0])).sum::<f32>()
+    }
+
     /// The force that would stretch it to twice its length at rest \[N\], which is so many metres; without one it does not stretch.
     fn stiffness(&self, whole: f32) -> Option<f32> {
         let hung = |percent: f32| 0.5 * self.by_metre() * EARTH * whole / (0.01 * percent);

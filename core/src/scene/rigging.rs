@@ -1,7 +1,7 @@
 //! Bodies that hang from others, as a file declares them: how fast ropes turn them to and fro, and how far they let sheets sink.
 
 use super::remarks::load::enough;
-use super::{Body, Boxes, Cord, SceneFile};
+use super::{Body, BodyTie, Boxes, Cord, SceneFile};
 use crate::constrain::{root, unite};
 use crate::math::{length, max, sqrt};
 use alloc::format;
@@ -62,7 +62,7 @@ impl SceneFile {
         (needed > self.substeps()).then(|| (number, says()))
     }
 
-    /// A remark on a rope between a point of a sheet and something heavy: a sheet does not feel what ropes pull at it until they have. A load of n times the point's mass, or a sheet
+    /// A remark on a rope from a point of a sheet, with what hangs from it: a sheet does not feel what ropes pull at it until they have. A load of n times the point's mass, or a sheet
     /// that ropes hold, sinks by about 8 n g h² beyond what it gives, as measured with n from 100 to 700; a hundredth of the sheet is too much.
     pub(super) fn hung_on_sheet(&self, cord: &Cord) -> Option<String> {
         const SINKS: f32 = 8.0;
@@ -73,13 +73,17 @@ impl SceneFile {
         let cloth = self.cloths.get(number as usize)?;
         let (sheet, _) = cloth.sheet().zip(cloth.shell_params())?;
         let (point, long) = (cloth.point_mass()?, sheet.sides.map(length).into_iter().fold(0.0, max));
-        let boxes = if let Some(Body::Box(number)) = cord.ends[1 - side] { self.boxes_of(number) } else { None };
+        let boxes = match cord.ends[1 - side] {
+            Some(Body::Box(number)) => self.boxes_of(number),
+            Some(_) => return None,
+            None => None,
+        };
         let holds = boxes.map_or(cord.fixed.contains(&far), |boxes| boxes.fixed);
         // Only who asks goes over all of them.
         let ropes =
             || self.ropes.iter().flat_map(|cord| cord.ends).filter(|&end| end == Some(Body::Cloth(number))).count();
         let load = if !holds {
-            boxes?.weight()?
+            boxes.and_then(Boxes::weight).unwrap_or(0.0) + cord.mass()
         } else if cloth.fixed.is_empty() {
             point * cloth.count()? as f32 / ropes() as f32
         } else {
@@ -92,6 +96,18 @@ impl SceneFile {
             format!(
                 "it bears {load} kg at a point of a sheet that weighs {point} kg, and gives way far more than both do; {} for a hundredth of the sheet",
                 enough(needed)
+            )
+        })
+    }
+
+    /// A remark on a rope that is sewn to a sheet: both are solved apart, and what each does to the points of the other that lie between its own drives them.
+    pub(super) fn sewn_to_sheet(&self, tie: &BodyTie) -> Option<String> {
+        let (Some(Body::Rope(_)), Body::Cloth(number)) = (tie.of, tie.to) else { return None };
+        let is_shell = self.cloths.get(number as usize)?.shell_params().is_some();
+        let is_sewn = is_shell && tie.points.len() > 1 && tie.compliance == 0.0;
+        is_sewn.then(|| {
+            String::from(
+                "a rope that is sewn to a sheet between points of that may drive it ever faster; give it points where the sheet has them, or take a strand",
             )
         })
     }

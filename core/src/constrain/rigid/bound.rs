@@ -9,8 +9,9 @@ use super::span::Span;
 use crate::lanes::ABREAST;
 use crate::math::{dot, max, min, sqrt};
 
-/// Takes back from what a blow has made of how bodies move, while these do not know it yet, what it has given.
-pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
+/// Takes back from what a blow has made of how bodies move, while these do not know it yet, what it has given. Tells whether that is any: then each body stands, by its
+/// colour, for itself or leads to the one that stands for it.
+pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) -> bool {
     // Most often nobody has more than he came with.
     let gains = |(body, to): (&Body, &Moving)| {
         let [spare, linear, square] = account(body, to, span.h);
@@ -18,7 +19,7 @@ pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
     };
     let bouncing = bodies.iter().zip(&*order.moving).filter(|(body, _)| body.bounces != 0 && body.moves());
     if !{ bouncing }.any(gains) {
-        return;
+        return false;
     }
     // Colours have done their work.
     for (number, body) in bodies.iter_mut().enumerate() {
@@ -46,6 +47,22 @@ pub(super) fn bound(bodies: &mut [Body], order: &mut Order<'_>, span: Span) {
         let share = share(&bodies[root(bodies, number)].blow);
         if let (true, Some(moving)) = (share < 1.0, order.moving.get_mut(number)) {
             moving.go_part(&bodies[number], share);
+        }
+    }
+    true
+}
+
+/// Takes back from impulses what has been taken back of all that they have done: what bodies have not been given cannot be taken from them later.
+pub(super) fn take_back(bodies: &mut [Body], order: &mut Order<'_>) {
+    for pack in order.packs.iter_mut() {
+        for lane in 0..pack.len() {
+            // Of two of which one stays the other knows.
+            let [a, b] = [0, 1].map(|side| pack.bodies[side][lane] as usize);
+            let number = if bodies[b].moves() { b } else { a };
+            let share = share(&bodies[root(bodies, number)].blow);
+            if share < 1.0 {
+                pack.press_part(lane, share);
+            }
         }
     }
 }

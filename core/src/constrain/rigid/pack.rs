@@ -158,6 +158,14 @@ impl Pack {
         pressed
     }
 
+    /// Leaves but a share of what two of them have pressed each other with.
+    pub(super) fn press_part(&mut self, lane: usize, share: f32) {
+        for spots in &mut self.spots {
+            spots.pressed[lane] *= share;
+            spots.held.iter_mut().for_each(|held| held[lane] *= share);
+        }
+    }
+
     /// Tells whether one of them is pressed by a surface that moves.
     pub(super) fn is_carried(&self, lane: usize) -> bool {
         let mut all = self.spots.iter().zip(&self.places).take(self.points[lane] as usize);

@@ -1,7 +1,7 @@
 //! What bodies that touch do to each other in a sub-step: impulses that hold them apart, and friction.
 
 use super::body::Body;
-use super::bound::bound;
+use super::bound::{bound, take_back};
 use super::facets::middle;
 use super::manifold::{Manifold, Manifolds};
 use super::moving::{self, Moving};
@@ -46,8 +46,8 @@ pub(super) fn keep_apart(bodies: &mut [Body], manifolds: &Manifolds<'_>, order: 
     run_abreast(HoldOn { order });
     go_over(order);
     let struck = strike(bodies, order);
-    if struck {
-        bound(bodies, order, span);
+    if struck && bound(bodies, order, span) {
+        take_back(bodies, order);
     }
     moving::tell(order.moving, bodies);
     for pack in order.packs.iter() {

@@ -55,6 +55,9 @@ impl SceneFile {
         for (i, cord) in self.ropes.iter().enumerate() {
             add(format_args!("ropes[{i}].ends"), self.hung_on_sheet(cord));
         }
+        for (i, tie) in self.ties.iter().enumerate() {
+            add(format_args!("ties[{i}]"), self.sewn_to_sheet(tie));
+        }
         // All such ropes are of one kind to whoever reads it.
         if let Some((i, remark)) = self.hung_in_turn() {
             add(format_args!("ropes[{i}].ends"), Some(remark));
