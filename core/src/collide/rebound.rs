@@ -305,7 +305,7 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
 
     /// A point beside the hit that is surely on the side the path came from: off the surface by twice its slack, if the
     /// way there is free; else as far back on the path as is free, at last where the chord begins, or where that is carried
-    /// to. A surface that moves takes what is back on the path along to the instant of the hit.
+    /// to, or has gone after what goes away from it. A surface that moves takes what is back on the path along to the instant of the hit.
     #[inline(never)]
     fn set_off(&self, path: &Path, meeting: &Meeting, place: Vec3) -> Vec3 {
         let Meeting { chord, hit, begun, time: s, .. } = meeting;
@@ -339,8 +339,20 @@ impl<C: Collider + ?Sized> Sweep<'_, C> {
             }
             back *= 4.0;
         }
-        let from = self.walls.carry(chord.from, self.radius, [chord.during[0], now]);
+        let during = [chord.during[0], now];
+        let left = if advance < 0.0 { self.gone_after(hit, chord.from, during) } else { None };
+        let from = left.unwrap_or_else(|| self.walls.carry(chord.from, self.radius, during));
         self.off_crease(path, meeting, from)
+    }
+
+    /// Where something is, off it by as much as what rests, that lies on a surface within rounding and has gone after it as that has gone away: it runs over nobody.
+    #[inline(never)]
+    fn gone_after(&self, hit: &Hit, from: Vec3, during: [Time; 2]) -> Option<Vec3> {
+        let [raised, below] = [2.0, -LAIN].map(|slacks| along(from, hit.normal, slacks * hit.slack));
+        let Ride { place: to, .. } =
+            self.walls.ride(&Segment { from: raised, to: below, radius: self.radius, during })?;
+        let way = Segment { from, to, radius: self.radius, during };
+        self.walls.carry_on(&way).or(Some(to))
     }
 }
 

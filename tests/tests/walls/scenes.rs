@@ -2,7 +2,8 @@
 
 use pointmass::scene::{Files, Model, SceneFile, write_scn};
 use pointmass::shape::MeshBuf;
-use pointmass::{Heap, System, Time, Vec3};
+use pointmass::{Heap, Method, Scene, System, Time, Vec3};
+use pointmass_tests::is_third;
 
 struct NoFiles;
 
@@ -78,4 +79,55 @@ fn what_cannot_be_used_is_refused() {
     };
     assert!(load(&squashed(0.0)).is_ok(), "points meet an ellipsoid");
     assert!(load(&squashed(0.1)).expect_err("balls do not").contains("scenery[0].group"));
+}
+
+/// A floor that goes anywhere at an even speed, as a lift does, is one that stands still to what lies on it and goes along: points, balls, ropes and cloths stay
+/// down on it, whatever the sub-steps.
+#[test]
+fn what_lies_on_a_lift_stays_down_on_it() {
+    let things = [
+        r#""particles": [{"position": [0, 0, 0], "velocity": V}, {"position": [0.3, 0.05, 0], "velocity": V, "radius": 0.05}]"#,
+        r#""ropes": [{"curve": [[0, 0, 0], [0.5, 0, 0.1]], "segments": 10, "diameter": 0.01, "density": 900, "velocity": V}]"#,
+        r#""cloths": [{"form": {"sheet": {"corner": [0, 0, 0], "sides": [[0.5, 0, 0], [0, 0, 0.5]], "cells": [5, 5]}},
+            "density": 0.3, "shell": {"stretch": [1000, 1000], "shear": 60, "bending": 5e-5, "damping": 0.003}, "velocity": V}]"#,
+    ];
+    let mut cases = 0;
+    for speed in [-5.0f32, -1.0, -0.1, 0.1, 1.0, 5.0] {
+        for along in [0.0, 1.0] {
+            for (thing, &method) in
+                things.iter().flat_map(|thing| Method::ALL.iter().map(move |method| (thing, method)))
+            {
+                if !is_third(&mut cases) {
+                    continue;
+                }
+                let velocity = format!("[{}, {speed}, 0]", along * speed);
+                let text = format!(
+                    r#"{{"forces": [{{"gravity": {{"acceleration": [0, -9.81, 0]}}}}],
+                    "scenery": [{{"shape": {{"plane": {{"point": [0, 0, 0], "normal": [0, 1, 0]}}}}, "motion": {{"drift": {velocity}}}}}],
+                    {}}}"#,
+                    thing.replace('V', &velocity)
+                );
+                let model = load(&text).expect("nothing is wrong with it");
+                for substeps in [1, 3, 10] {
+                    let scene = Scene { substeps, integrator: method.integrator(), ..model.scene() };
+                    let mut system = System::with(Heap::new(scene.size()));
+                    system.start(&scene, 0).expect("the memory is made for it");
+                    for frame in 1..=60 {
+                        system.step_to(&scene, Time::frame(frame, 60));
+                        let floor = speed * frame as f32 / 60.0;
+                        let p = system.particles();
+                        for (x, radius) in p.position.iter().zip(p.radius) {
+                            let (above, what) = (x.y - floor - radius, &model.particles.len());
+                            let most = 1e-4 + 1e-5 * speed.abs();
+                            assert!(
+                                above.abs() < most,
+                                "{what} {} {velocity} {substeps}, {frame}: {above}",
+                                method.name()
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
 }
