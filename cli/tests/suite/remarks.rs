@@ -105,6 +105,12 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             "a.json:contacts.position: balls of 1000 kg weigh more than 50 times as much as those of 1 kg",
         ),
         (
+            r#"{"forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}], "contacts": {"position": {}}, "run": {"dt": 0.016666666},
+                "particles": [{"radius": 1e-4}, {"radius": 0.1, "position": [1, 0, 0]}]}"#
+                .into(),
+            "a.json:contacts.position: gravity moves balls of 0.0001 m by 0.19 of their radius in a sub-step: in heaps they sink into each other, and wander; run.substeps of 37 are enough",
+        ),
+        (
             r#"{"particles": [{}, {}], "springs": [{"ends": [1, 1], "rest_length": 1, "ks": 1}]}"#.into(),
             "a.json:springs[0].ends: the spring joins particle 1 to itself",
         ),

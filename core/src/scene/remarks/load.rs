@@ -34,6 +34,29 @@ impl SceneFile {
         (most > UNEVEN * least).then(uneven)
     }
 
+    /// A remark on balls so small that gravity moves them by a good part of their radius in a sub-step: in a heap of n layers each is in the next by some 0.14 n g h² / r of its
+    /// diameter, as measured with 4 and 20.
+    pub(super) fn fine_balls(&self) -> Option<String> {
+        /// The share of a radius that is too much, and one that leaves ten layers 3 % of a diameter.
+        const MOST: f32 = 0.05;
+        const FINE: f32 = 0.02;
+        let Some(Response::Position(_)) = self.contacts else { return None };
+        let begun = self.particles.iter().filter(|ball| !ball.fixed).map(|ball| ball.radius);
+        let born = self.emitters.iter().filter(|emitter| !emitter.fixed).map(|emitter| emitter.radius.mean);
+        let least = begun.chain(born).filter(|radius| *radius > 0.0).fold(f32::INFINITY, f32::min);
+        let taken = self.substeps();
+        let h = self.run.dt as f32 / taken as f32;
+        let share = length(self.pull()) * h * h / least;
+        let needed = (taken as f32 * sqrt(share / FINE)) as u32;
+        let sinks = || {
+            format!(
+                "gravity moves balls of {least} m by {share:.2} of their radius in a sub-step: in heaps they sink into each other, and wander; {}",
+                enough(needed.saturating_add(1))
+            )
+        };
+        (share > MOST).then(sinks)
+    }
+
     /// A remark on balls that meet by impulse above rigid bodies, which are met after them: those that lie on each other are pressed into what bears them, whatever the steps.
     pub(super) fn pressed_in(&self) -> Option<String> {
         let Some(Response::Impulse {}) = self.contacts else { return None };

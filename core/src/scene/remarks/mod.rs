@@ -44,6 +44,7 @@ impl SceneFile {
         }
         self.add_emitters(&mut add);
         add(format_args!("contacts.position"), self.uneven_balls());
+        add(format_args!("contacts.position"), self.fine_balls());
         add(format_args!("contacts.impulse"), self.pressed_in());
         add(format_args!("boxes"), self.uneven_boxes());
         self.add_heaps(&mut add);
