@@ -56,15 +56,16 @@ impl Source {
 /// # Errors
 /// If it cannot be read, with file, line and column where there are such.
 pub fn scene(path: &Path) -> Outcome<SceneFile> {
-    Ok(scene_with(path, Unknown::Refuse)?.0)
+    Ok(scene_with(path, Unknown::Refuse, |dt| dt)?.0)
 }
 
-/// The same, which may pass over commands that are `unknown` in `.scn`, and where it was read from.
+/// The same, which may pass over commands that are `unknown` in `.scn`, and where it was read from. What it remarks on goes by the step that is made of that in the
+/// file \[s\].
 ///
 /// # Errors
 /// As of [`scene()`].
-pub(crate) fn scene_with(path: &Path, unknown: Unknown) -> Outcome<(SceneFile, Source)> {
-    let (scene::Reading { scene, warnings, remarks }, source) = read(path, unknown)?;
+pub(crate) fn scene_with(path: &Path, unknown: Unknown, step: impl FnOnce(f64) -> f64) -> Outcome<(SceneFile, Source)> {
+    let (scene::Reading { scene, warnings, remarks }, source) = read(path, unknown, step)?;
     warn(&[warnings, remarks].concat());
     Ok((scene, source))
 }
@@ -74,12 +75,12 @@ pub(crate) fn scene_with(path: &Path, unknown: Unknown) -> Outcome<(SceneFile, S
 /// # Errors
 /// As of [`scene()`].
 pub(crate) fn declared(path: &Path, unknown: Unknown) -> Outcome<(SceneFile, Source)> {
-    let (scene::Reading { scene, warnings, .. }, source) = read(path, unknown)?;
+    let (scene::Reading { scene, warnings, .. }, source) = read(path, unknown, |dt| dt)?;
     warn(&warnings);
     Ok((scene, source))
 }
 
-fn read(path: &Path, unknown: Unknown) -> Outcome<(scene::Reading, Source)> {
+fn read(path: &Path, unknown: Unknown, step: impl FnOnce(f64) -> f64) -> Outcome<(scene::Reading, Source)> {
     let format = format_of::<SceneFormat>(path);
     if format.is_none() && path.is_file() && !is_standard(path) {
         let path = path.display();
@@ -92,8 +93,11 @@ fn read(path: &Path, unknown: Unknown) -> Outcome<(scene::Reading, Source)> {
         let reading = read_scn_with(&name, &text, &mut Disk, unknown).map_err(hinted)?;
         return Ok((reading, Source { name: name.into_owned(), json: None }));
     }
-    let scene = SceneFile::from_json(&name, &text).map_err(|error| with_path(error, &text))?;
+    let mut scene = SceneFile::from_json(&name, &text).map_err(|error| with_path(error, &text))?;
+    let declared = scene.run.dt;
+    scene.run.dt = step(declared);
     let remarks = SceneFile::former_names(&text).into_iter().chain(scene.remarks());
+    scene.run.dt = declared;
     let remarks = remarks.chain(lost_textures(&scene, path)).map(|remark| format!("{name}:{remark}")).collect();
     let source = Source { name: name.into_owned(), json: Some(text) };
     Ok((scene::Reading { scene, warnings: Vec::new(), remarks }, source))

@@ -73,6 +73,12 @@ impl Settings {
     pub(crate) fn of(scene: &Path, reading: Reading) -> Self {
         Self { scene: scene.to_path_buf(), reading, threads: Some(1), ..Self::default() }
     }
+
+    /// The step that is made of the scene's own: what is said of it, divided as is said \[s\].
+    fn step(&self, declared: f64) -> f64 {
+        let parts = if let Substeps::Fixed(parts) = self.substeps { f64::from(parts) } else { 1.0 };
+        self.dt.unwrap_or(declared) / parts
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
@@ -108,7 +114,7 @@ const WORTH_THREADS: usize = 4096;
 impl World {
     /// Loads the scene and puts in what it begins with.
     pub(crate) fn load(args: &Settings) -> Outcome<Self> {
-        let (mut file, source) = load::scene_with(&args.scene, args.reading.unknown())?;
+        let (mut file, source) = load::scene_with(&args.scene, args.reading.unknown(), |dt| args.step(dt))?;
         let run = &mut file.run;
         run.integrator = args.integrator.unwrap_or(run.integrator);
         if let Some(tolerance) = args.tolerance.filter(|_| run.integrator.chooses_steps()) {

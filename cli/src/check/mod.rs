@@ -75,7 +75,7 @@ pub(crate) struct Check {
 
 /// Checks a scene as the arguments say. Files are written whole, at the end, or not at all.
 pub(crate) fn check(args: &Check) -> Outcome {
-    let (mut file, source) = load::scene_with(&args.scene, args.reading.unknown())?;
+    let (mut file, source) = load::scene_with(&args.scene, args.reading.unknown(), |dt| args.dt.unwrap_or(dt))?;
     let run = &mut file.run;
     run.integrator = args.integrator.unwrap_or(run.integrator);
     run.dt = args.dt.unwrap_or(run.dt);

@@ -276,6 +276,26 @@ fn bodies_on_two_ropes_are_remarked_on() {
     }
 }
 
+/// What is too little for a step is told of the steps that are made, whatever the file says.
+#[test]
+fn remarks_on_steps_go_by_the_command_line() {
+    let folder = Folder::new();
+    let scene = r#"{"forces": [{"gravity": {"acceleration": [0, -9.81, 0]}}], "contacts": {"position": {}},
+        "particles": [{"radius": 1e-4}, {"radius": 0.1, "position": [1, 0, 0]}]}"#;
+    folder.write("a.json", scene);
+    let told = |command: &str| folder.run(command).stderr.contains("of their radius in a sub-step");
+    for (arguments, is_told) in [
+        ("--dt 1/60", true),
+        ("--dt 1/60 --substeps 2", false),
+        ("--dt 1/240", false),
+        ("--dt 1/30 --substeps 2", true),
+        ("--dt 1/60 --substeps auto", true),
+    ] {
+        assert_eq!(told(&format!("run a.json --steps 1 {arguments}")), is_told, "{arguments}");
+    }
+    assert!(told("check a.json --dt 1/60") && !told("check a.json --dt 1/240"));
+}
+
 /// Ropes between a sheet and what is heavy for its points are remarked on, with as many sub-steps as leave no remark: those that are heavy or bear a box, and those that hold the sheet. What is tied is
 /// not, as sheets feel that.
 #[test]
