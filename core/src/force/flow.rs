@@ -40,7 +40,7 @@ impl Flow for Uniform {
 }
 
 /// The same velocity everywhere, whose strength swings: w = velocity × (1 + amplitude g(t)), with g from −1 to 1 the sum of
-/// three sines, of the frequency, (1 + √5)/2 times it and √7 times it, so that it never repeats.
+/// 0.5, 0.3 and 0.2 times three sines, of the frequency, (1 + √5)/2 times it and √7 times it, so that it never repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
