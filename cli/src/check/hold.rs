@@ -19,7 +19,7 @@ pub(crate) const FAULT: f64 = 0.01;
 
 /// The share of a box that a pile sinks by from which on it has been seen to fall through itself without friction; with friction from three times
 /// that on.
-const FALLS: f64 = 0.07;
+const FALLS: f64 = 0.055;
 /// The share of a link by which gravity takes a rope's particles on in a sub-step, from which on slack ropes may tremble for ever. Which of them do hangs on
 /// their drag: some at 0.1, most at 0.14.
 const TREMBLES: f64 = 0.08;
