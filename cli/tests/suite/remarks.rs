@@ -111,6 +111,22 @@ fn json_that_is_hardly_meant_is_remarked_on_by_name() {
             "a.json:contacts.position: gravity moves balls of 0.0001 m by 0.19 of their radius in a sub-step: in heaps they sink into each other, and wander; run.substeps of 37 are enough",
         ),
         (
+            r#"{"boxes": [{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0], "count": [2, 0, 1]}]}"#.into(),
+            "a.json:boxes[0].count: 0 of them along an axis are none at all",
+        ),
+        (
+            r#"{"boxes": [{"sides": [1, 1, 1], "mass": 1, "position": [0, 0, 0], "fixed": true, "velocity": [1, 0, 0]}]}"#.into(),
+            "a.json:boxes[0].velocity: they are fixed, and stay where they are",
+        ),
+        (
+            r#"{"lights": [{"directional": {"color": [1, 1, 1], "direction": [0, 0, 0]}}]}"#.into(),
+            "a.json:lights[0].direction: 0 is no direction to shine in",
+        ),
+        (
+            emitter(r#""where_sparse": {"radius": 0, "fewest": 3}"#),
+            "a.json:emitters[0].where_sparse.radius: nobody is within 0 m, so that it is sparse everywhere",
+        ),
+        (
             r#"{"particles": [{}, {}], "springs": [{"ends": [1, 1], "rest_length": 1, "ks": 1}]}"#.into(),
             "a.json:springs[0].ends: the spring joins particle 1 to itself",
         ),

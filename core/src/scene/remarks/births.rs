@@ -35,6 +35,9 @@ impl SceneFile {
             let crowded = emitter.where_sparse.is_some_and(|WhereSparse { fewest, .. }| fewest == 0);
             let nowhere = || "fewer than 0 are nowhere, so nothing is born; take 1 for places where nobody is".into();
             add(format_args!("emitters[{i}].where_sparse.fewest"), crowded.then(nowhere));
+            let blind = emitter.where_sparse.is_some_and(|WhereSparse { radius, .. }| radius == 0.0);
+            let anywhere = || "nobody is within 0 m, so that it is sparse everywhere".into();
+            add(format_args!("emitters[{i}].where_sparse.radius"), blind.then(anywhere));
             add(format_args!("emitters[{i}].shape.cone"), pointed(emitter));
             for (name, Varied { mean, half_width }) in varied(emitter) {
                 let counts = || format!("{half_width} counts as {}, as far to both sides", -half_width);

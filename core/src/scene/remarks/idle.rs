@@ -55,6 +55,13 @@ impl SceneFile {
             let nobody = || "nobody is within 0 m of another who is not in the same place".into();
             add(format_args!("reapers[{i}].dense.radius"), narrow.then(nobody));
         }
+        for (i, boxes) in self.boxes.iter().enumerate() {
+            let none = || "0 of them along an axis are none at all".into();
+            add(format_args!("boxes[{i}].count"), boxes.count.contains(&0).then(none));
+            let stays = || "they are fixed, and stay where they are".into();
+            add(format_args!("boxes[{i}].velocity"), (boxes.fixed && boxes.velocity != Vec3::ZERO).then(stays));
+            add(format_args!("boxes[{i}].spin"), (boxes.fixed && boxes.spin != Vec3::ZERO).then(stays));
+        }
         for (i, goal) in self.goals.iter().enumerate() {
             let infinite = matches!(goal.shape, Shape::Plane(_));
             let point = || "a plane is infinite, so all are led to its one point".into();

@@ -35,6 +35,8 @@ impl SceneFile {
             let most = largest(light.color());
             let less = || format!("{most} is drawn as {DAZZLING}, the most there is");
             add(format_args!("lights[{i}].color"), (most > DAZZLING).then(less));
+            let nowhere = matches!(light, Light::Directional { direction, .. } if *direction == [0.0; 3]);
+            add(format_args!("lights[{i}].direction"), nowhere.then(|| "0 is no direction to shine in".into()));
         }
         add(format_args!("ambient"), bright(self.ambient));
         add(format_args!("background"), bright(self.background));
