@@ -292,7 +292,7 @@ fn bodies_on_two_ropes_are_remarked_on() {
     }
 }
 
-/// What is too little for a step is told of the steps that are made, whatever the file says.
+/// Remarks on steps that are too long go by those that are made, whatever the file says.
 #[test]
 fn remarks_on_steps_go_by_the_command_line() {
     let folder = Folder::new();
